@@ -1,0 +1,30 @@
+# Every flag that any target is compiled with. Determinism lives here: no fused multiply-add, no fast-math, no
+# -march=native, so that g++ and clang++ at any optimisation level give the same bits.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")  # asserts stay on: a broken promise must not go unseen in a result
+
+find_program(VERISIM_CCACHE ccache)
+if(VERISIM_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${VERISIM_CCACHE})
+endif()
+
+add_library(verisim_flags INTERFACE)
+target_compile_options(verisim_flags INTERFACE -ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
+target_include_directories(verisim_flags INTERFACE ${PROJECT_SOURCE_DIR})
+option(VERISIM_WERROR "Treat warnings as errors" OFF)
+if(VERISIM_WERROR)
+  target_compile_options(verisim_flags INTERFACE -Werror)
+endif()
+set(VERISIM_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
+if(VERISIM_SANITIZE)
+  add_compile_options(-fsanitize=${VERISIM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${VERISIM_SANITIZE})
+endif()
+find_package(Threads REQUIRED)

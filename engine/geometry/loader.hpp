@@ -1,0 +1,41 @@
+// Reads models into parts. STEP, BREP and Solids go through OpenCASCADE in a child process (program verisim-cad beside
+// this one): the kernel is not thread-safe, some files crash it, and a crash there must be bad input here. STL, OBJ, PLY
+// and glTF go through assimp.
+//
+// Errors: Error(input) naming the file, what is wrong and what to do: missing, empty, truncated, no solid in it, NaN,
+// open or self-intersecting mesh (unless options.brep_required is off and the caller accepts repair notes).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/geometry/part.hpp"
+#include "engine/geometry/solid.hpp"
+
+namespace verisim {
+
+struct LoadOptions {
+  double scale = 0;             ///< metres per unit of a mesh file; 0: metres for meshes, the file's own unit for STEP/BREP
+                                ///< (mm for BREP). Given for STEP it multiplies the file's own.
+  double deflection = 0;        ///< chord error of the tessellation [m]; 0: 1/2000 of the bounding box diagonal
+  double angular_deflection = 0.1;  ///< rad
+};
+
+/// One part per solid, in file order. Coordinates coming from the CAD kernel are rounded to 2^-36 m and derived numbers
+/// to 40 bits, so that the kernel's last-bit differences between CPUs do not reach a state hash.
+/// `content` is the file's bytes (already read by the caller, who records them); `path` gives format and error texts.
+[[nodiscard]] std::vector<Part> load_model(const std::string& path, const std::string& content, const LoadOptions& options);
+
+[[nodiscard]] Part load_solid(const Solid& solid, const LoadOptions& options);
+
+/// Writes the solids as one STEP file (AP214, mm) through the same child process: scenes made of files the project wrote.
+void write_step(const std::string& path, const std::vector<std::pair<std::string, Solid>>& solids);
+
+/// Binary STL in the mesh's own units times `units_per_metre` (1000: millimetres).
+void write_stl(const std::string& path, const TriangleMesh& mesh, double units_per_metre);
+
+/// One sentence per thing that should be questioned before simulating: a part larger than 100 m or smaller than 10 um
+/// in its longest direction (a model in millimetres read as metres), with the scale that would make it plausible.
+[[nodiscard]] std::vector<std::string> questions_about(const Part& part);
+
+}  // namespace verisim

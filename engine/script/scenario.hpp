@@ -1,0 +1,57 @@
+// A scenario: a Lua script that describes a scene and acts on it while it runs. Lua 5.1, sandboxed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/simulation/inputs.hpp"
+#include "engine/simulation/scene.hpp"
+#include "engine/simulation/simulation.hpp"
+
+namespace verisim {
+
+struct ScenarioOptions {
+  std::string path;                                         ///< of the script, as the command line gives it
+  std::vector<std::pair<std::string, std::string>> sets;    ///< --set KEY=VALUE: VALUE is a Lua expression; a bare word is a string
+  std::vector<std::pair<std::string, std::string>> binds;   ///< --bind NAME=SOURCE
+  std::optional<std::uint64_t> seed;                        ///< --seed, --duration win over the script
+  std::optional<double> duration;
+  std::size_t memory_limit = std::size_t{256} << 20;        ///< bytes of Lua memory
+  std::uint64_t instruction_limit = 200'000'000;            ///< while building; and per script frame 10'000'000
+};
+
+/// A value measured by the script: measure(name, value, unit).
+struct Measure {
+  std::string name;
+  double value;
+  std::string unit;
+};
+
+class Scenario {
+ public:
+  /// Runs the script: builds the scene. Error(input) with file and line for a script error, unknown parameter (lists them,
+  /// suggests the nearest), time or memory limit, a file outside the scenario's folder.
+  Scenario(const ScenarioOptions& options, Inputs& inputs);
+  ~Scenario();
+
+  /// The scene as described. Moved out: once.
+  [[nodiscard]] Scene take_scene();
+  /// Binds the script's objects to the running simulation and registers its frame clock (60 Hz of simulated time).
+  void attach(Simulation& simulation);
+
+  [[nodiscard]] std::string parameters_json() const;   ///< all params{} as resolved
+  [[nodiscard]] const std::string& outcome() const;    ///< outcome("…"); empty if none was said
+  [[nodiscard]] bool finished() const;                 ///< the script asked to stop (outcome with stop, simulation:stop())
+  [[nodiscard]] const std::vector<Measure>& measures() const;
+  [[nodiscard]] std::vector<std::string> notices() const;  ///< questioned or ignored things, each once
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace verisim

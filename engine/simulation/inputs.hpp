@@ -1,0 +1,48 @@
+// Everything that a run reads from outside, in one place: so that a run file can hold all of it and `replay` needs
+// nothing else. Live, files are read from disk and models loaded; stored, both come from a run file.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/loader.hpp"
+#include "engine/record/run_file.hpp"
+
+namespace verisim {
+
+class Inputs {
+ public:
+  /// Reads from disk. Relative names are looked up in `folder`; a name that leads outside `folder` (after resolving links)
+  /// is refused unless it is below one of `also_allowed` (files and folders that the command line named).
+  static Inputs live(const std::string& folder, std::vector<std::string> also_allowed);
+  /// Serves what a run file holds and nothing else.
+  static Inputs stored(std::vector<InputFile> files, std::vector<StoredModel> models);
+
+  /// Content of a file, read once. Error(input): not there, not a file, outside the allowed folders (says which is allowed).
+  const std::string& read(const std::string& name);
+  /// Is there such a file (and may it be read)?
+  [[nodiscard]] bool exists(const std::string& name) const;
+
+  /// Parts of a model file, a Solid. Loaded once per (name, options).
+  const std::vector<Part>& model(const std::string& name, const LoadOptions& options);
+  const Part& solid(const Solid& solid, const LoadOptions& options);
+
+  /// What was read so far, in order of first use: goes into the run file.
+  [[nodiscard]] std::vector<InputFile> files() const;
+  [[nodiscard]] std::vector<StoredModel> models() const;
+
+ private:
+  bool live_ = true;
+  std::string folder_;
+  std::vector<std::string> allowed_;
+  std::vector<std::string> order_;
+  std::map<std::string, std::string> contents_;
+  std::vector<std::string> model_order_;
+  std::map<std::string, std::vector<Part>> parts_;
+  std::string resolve(const std::string& name) const;
+  const std::vector<Part>& remember(const std::string& key, std::vector<Part> parts);
+};
+
+}  // namespace verisim

@@ -1,0 +1,92 @@
+// The fixed-step simulation of a scene. Simulated time only; same scene, same bits, whatever the threads and SIMD target.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/pose.hpp"
+#include "engine/record/run_file.hpp"
+#include "engine/simulation/scene.hpp"
+
+namespace verisim {
+
+struct SimulationOptions {
+  unsigned threads = 1;
+};
+
+/// Work done in one frame; deterministic. One counter per kind of work (/cost).
+struct FrameCost {
+  std::uint64_t pairs_tested = 0;     ///< body pairs whose boxes overlap
+  std::uint64_t clusters = 0;
+  std::uint64_t points_tested = 0;
+  std::uint64_t voxels_read = 0;
+  std::uint64_t contacts = 0;
+  std::uint64_t lookups = 0;          ///< pairs of feature sets looked up
+  std::uint64_t recognitions = 0;
+};
+
+class Simulation {
+ public:
+  /// Voxelizes what the scene needs (a body that can never come near another is not), places bodies and devices.
+  /// Error(input) with body and reason: no volume, voxel size, mass not finite …
+  Simulation(Scene scene, const SimulationOptions& options);
+  ~Simulation();
+
+  /// Advances from frame to frame + 1. Allocates nothing after the first call. Error(diverged) if a state stops being finite
+  /// (nothing of that frame is recorded).
+  void step();
+
+  [[nodiscard]] std::uint64_t frame() const;              ///< frames computed so far
+  [[nodiscard]] double time() const;                      ///< frame * dt
+  [[nodiscard]] double dt() const;
+  [[nodiscard]] std::uint64_t frames_planned() const;     ///< from duration or the longest device
+  [[nodiscard]] std::uint64_t collision_frames() const;
+  [[nodiscard]] const FrameCost& cost() const;            ///< of the last frame
+  [[nodiscard]] std::uint64_t state_hash() const;         ///< after the last frame
+
+  // Bodies, by index in Scene::bodies.
+  [[nodiscard]] std::size_t body_count() const;
+  [[nodiscard]] int body_index(const std::string& name) const;   ///< -1: none
+  [[nodiscard]] Pose body_pose(std::size_t body) const;          ///< X_WB of the body coordinates
+  [[nodiscard]] Twist body_twist(std::size_t body) const;        ///< of the centre of mass
+  [[nodiscard]] Wrench body_force(std::size_t body) const;       ///< contact wrench of the last frame
+  [[nodiscard]] std::uint64_t body_contacts(std::size_t body) const;  ///< colliding voxel pairs of the last frame
+  void set_body_pose(std::size_t body, const Pose& X_WB);        ///< from scripts, between frames; velocity becomes zero
+  void grasp(std::size_t device, std::size_t body);
+  void release(std::size_t device);
+  [[nodiscard]] double mass(std::size_t body) const;
+
+  /// Called between frames, at the first frame whose time is not before k / rate (integer arithmetic, no drift), in the
+  /// order of adding: script frames, trackers, firmware. `f` gets the simulated time.
+  void add_clock(double rate_hz, std::function<void(double)> f);
+
+  /// An event for /events; kept until drain_events.
+  void add_event(const std::string& kind, const std::string& text);
+  [[nodiscard]] std::vector<Event> drain_events();
+
+  /// The columns of /state and /cost of this scene, and the last frame's values written into a row of that schema.
+  void describe(Schema& schema) const;
+  void write_row(std::byte* row) const;
+
+  /// Energy ledger since the start [J] (dynamics/ledger.hpp).
+  struct Energy {
+    double kinetic, coupling, gravity, dissipated, contact, input, residual;
+  };
+  [[nodiscard]] Energy energy() const;
+
+  struct Totals {
+    double force_max = 0;        ///< N, largest contact force on a body
+    double penetration_max = 0;  ///< m
+    std::uint64_t cache_hits = 0, cache_misses = 0;
+  };
+  [[nodiscard]] const Totals& totals() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace verisim
