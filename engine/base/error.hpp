@@ -1,8 +1,9 @@
 // Errors at the edge and contracts inside.
 //
-// Whatever comes from outside (scenario, model, trace, run file, command line, disk) is checked where it enters; what is
-// wrong with it is thrown as an Error whose text is one line: where, what, what to do. The command line turns the kind
-// into the promised exit code (INTERFACES section 1). Inside, a broken promise is VERISIM_ASSERT, on in every build.
+// Whatever comes from outside (scenario, model, trace, run file, command line, disk) is checked where it enters; what
+// is wrong with it is thrown as an Error whose text is one line: where, what, what to do. The command line turns the
+// kind into the promised exit code (INTERFACES section 1). Inside, a broken promise is VERISIM_ASSERT, on in every
+// build.
 #pragma once
 
 #include <fmt/format.h>
@@ -43,7 +44,8 @@ template <typename... Args>
 /// Prints where a promise was broken and aborts. Never returns.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line);
 
-/// The name in `known` that is nearest to `name` by edit distance, or an empty string if none is near. For "did you mean".
+/// The name in `known` that is nearest to `name` by edit distance, or an empty string if none is near. For "did you
+/// mean".
 [[nodiscard]] std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace verisim

@@ -20,6 +20,8 @@ std::string sha256(std::string_view content) {
   return hex;
 }
 
-std::string to_hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+std::string to_hex(std::uint64_t value) {
+  return fmt::format("{:016x}", value);
+}
 
 }  // namespace verisim

@@ -19,36 +19,48 @@ enum class Dtype : std::uint8_t { f64, f32, u64, u32, u16, u8, i32, i8 };
 [[nodiscard]] constexpr std::size_t size_of(Dtype t) {
   switch (t) {
     case Dtype::f64:
-    case Dtype::u64: return 8;
+    case Dtype::u64:
+      return 8;
     case Dtype::f32:
     case Dtype::u32:
-    case Dtype::i32: return 4;
-    case Dtype::u16: return 2;
+    case Dtype::i32:
+      return 4;
+    case Dtype::u16:
+      return 2;
     case Dtype::u8:
-    case Dtype::i8: return 1;
+    case Dtype::i8:
+      return 1;
   }
   return 0;
 }
 
 template <typename T>
 constexpr Dtype dtype_of() {
-  if constexpr (std::is_same_v<T, double>) return Dtype::f64;
-  else if constexpr (std::is_same_v<T, float>) return Dtype::f32;
-  else if constexpr (std::is_same_v<T, std::uint64_t>) return Dtype::u64;
-  else if constexpr (std::is_same_v<T, std::uint32_t>) return Dtype::u32;
-  else if constexpr (std::is_same_v<T, std::int32_t>) return Dtype::i32;
-  else if constexpr (std::is_same_v<T, std::uint16_t>) return Dtype::u16;
-  else if constexpr (std::is_same_v<T, std::int8_t>) return Dtype::i8;
-  else return Dtype::u8;
+  if constexpr (std::is_same_v<T, double>)
+    return Dtype::f64;
+  else if constexpr (std::is_same_v<T, float>)
+    return Dtype::f32;
+  else if constexpr (std::is_same_v<T, std::uint64_t>)
+    return Dtype::u64;
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return Dtype::u32;
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return Dtype::i32;
+  else if constexpr (std::is_same_v<T, std::uint16_t>)
+    return Dtype::u16;
+  else if constexpr (std::is_same_v<T, std::int8_t>)
+    return Dtype::i8;
+  else
+    return Dtype::u8;
 }
 
 struct NamedArray {
-  std::string name;                 ///< path below its group, e.g. "triangles"
+  std::string name;  ///< path below its group, e.g. "triangles"
   Dtype dtype = Dtype::f64;
-  std::vector<std::size_t> shape;   ///< row-major
-  std::vector<std::byte> bytes;     ///< native byte order
-  std::string units;                ///< "m", "1", …
-  std::string description;          ///< one sentence
+  std::vector<std::size_t> shape;  ///< row-major
+  std::vector<std::byte> bytes;    ///< native byte order
+  std::string units;               ///< "m", "1", …
+  std::string description;         ///< one sentence
 
   template <typename T>
   static NamedArray from(std::string name, std::span<const T> values, std::vector<std::size_t> shape, std::string units,
@@ -62,7 +74,8 @@ struct NamedArray {
   /// The values as T. Throws Error(input) if the array holds another type.
   template <typename T>
   [[nodiscard]] std::vector<T> as() const {
-    if (dtype != dtype_of<T>()) fail(ErrorKind::input, "'{}' holds another number type than expected; the run file is damaged", name);
+    if (dtype != dtype_of<T>())
+      fail(ErrorKind::input, "'{}' holds another number type than expected; the run file is damaged", name);
     std::vector<T> values(bytes.size() / sizeof(T));
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;

@@ -16,8 +16,8 @@ using Quaterniond = Eigen::Quaterniond;
 
 /// A rigid placement X_WB.
 struct Pose {
-  Vector3d position = Vector3d::Zero();             ///< origin of B in W [m]
-  Quaterniond rotation = Quaterniond::Identity();   ///< unit
+  Vector3d position = Vector3d::Zero();            ///< origin of B in W [m]
+  Quaterniond rotation = Quaterniond::Identity();  ///< unit
 
   [[nodiscard]] Vector3d operator*(const Vector3d& p) const { return rotation * p + position; }
   [[nodiscard]] Pose operator*(const Pose& other) const {

@@ -22,9 +22,13 @@ constexpr std::uint64_t kNormalHalf = std::uint64_t{1} << 63;
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name)
     : key_(mix(seed * kGolden + hash_bytes(name.data(), name.size(), 0))) {}
 
-std::uint64_t RandomStream::bits(std::uint64_t counter) const { return mix(key_ + mix(counter + kGolden) * kGolden); }
+std::uint64_t RandomStream::bits(std::uint64_t counter) const {
+  return mix(key_ + mix(counter + kGolden) * kGolden);
+}
 
-double RandomStream::uniform(std::uint64_t counter) const { return static_cast<double>(bits(counter) >> 11) * 0x1p-53; }
+double RandomStream::uniform(std::uint64_t counter) const {
+  return static_cast<double>(bits(counter) >> 11) * 0x1p-53;
+}
 
 double RandomStream::normal(std::uint64_t counter) const {
   const double u = 1 - uniform(kNormalHalf + 2 * counter);  // (0, 1]: the logarithm stays finite

@@ -1,8 +1,9 @@
-// Devices: what a hand holds. A source (recorded trace, operator model) moves a handle; hardware models and filters wrap a
-// device and are devices themselves (dissertation section 4.3.1). World coordinates, SI.
+// Devices: what a hand holds. A source (recorded trace, operator model) moves a handle; hardware models and filters
+// wrap a device and are devices themselves (dissertation section 4.3.1). World coordinates, SI.
 //
 // One frame: sample() runs from the source outward to the outermost filter and yields the virtual handle; after the
-// coupling, render() runs back inward with the wrench that the hand shall feel, until the hardware (or operator) gets it.
+// coupling, render() runs back inward with the wrench that the hand shall feel, until the hardware (or operator) gets
+// it.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +16,9 @@ namespace verisim {
 
 /// What a device says in one frame.
 struct DeviceReading {
-  Pose raw;              ///< what the hardware reports
-  Pose handle;           ///< the virtual handle: after all filters
-  Twist velocity;        ///< of the virtual handle
-  bool button = true;    ///< a source without a button holds throughout
+  Pose raw;            ///< what the hardware reports
+  Pose handle;         ///< the virtual handle: after all filters
+  bool button = true;  ///< a source without a button holds throughout
 };
 
 class Device {
@@ -38,6 +38,9 @@ class Device {
   [[nodiscard]] virtual const Wrench& rendered() const = 0;
   /// Simulated time after which the device has nothing more to do [s]; 0: it has no end of its own.
   [[nodiscard]] virtual double duration() const = 0;
+  /// How far the virtual handle can get from where it starts [m]; infinity if that is not known. What lies further away
+  /// need not be voxelized.
+  [[nodiscard]] virtual double travel() const = 0;
   /// Is anything driving it? A device that nothing drives stays at its home pose (and the run says so).
   [[nodiscard]] virtual bool driven() const = 0;
 };

@@ -11,11 +11,11 @@ namespace verisim {
 
 struct HardwareDescription {
   std::string name;
-  double resolution = 0;                 ///< m; 0: not quantised
+  double resolution = 0;                                        ///< m; 0: not quantised
   double force_max = std::numeric_limits<double>::infinity();   ///< N, peak; a longer force is shortened to it
   double torque_max = std::numeric_limits<double>::infinity();  ///< N m; 0: renders no torque
-  bool forces = true;                    ///< forces= of the scenario: false renders nothing
-  Pose home;                             ///< pose while nothing drives it
+  bool forces = true;                                           ///< forces= of the scenario: false renders nothing
+  Pose home;                                                    ///< pose while nothing drives it
 };
 
 /// Phantom Omni: 3.3 N peak, 0.055 mm, no torque. Virtuose 6D35-45: 35 N, 3.1 N m.
@@ -25,8 +25,8 @@ struct HardwareDescription {
 /// Hardware moved by `source`; null: nothing drives it.
 [[nodiscard]] std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shared_ptr<Device> source);
 
-/// Scales positions and velocities of `inner` by `scale` about the origin and forces down by it (section 4.3.1); rotations
-/// and torques stay.
+/// Scales positions and velocities of `inner` by `scale` about the origin and forces down by it (section 4.3.1);
+/// rotations and torques stay.
 [[nodiscard]] std::shared_ptr<Device> make_scale(std::shared_ptr<Device> inner, double scale);
 /// Moves handle positions by `translation`.
 [[nodiscard]] std::shared_ptr<Device> make_translate(std::shared_ptr<Device> inner, const Vector3d& translation);

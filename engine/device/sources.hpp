@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,11 +12,11 @@
 
 namespace verisim {
 
-/// Samples of a haptic trace. Brought to the simulation's step by stated rules: positions linear, rotations slerp, buttons
-/// held; before the first and after the last sample the nearest is held. Sample times begin at 0.
-struct HapticSamples {          //  shape  unit
-  std::vector<double> t;        //  (n)    s     strictly growing
-  std::vector<Pose> pose;       //  (n)    m
+/// Samples of a haptic trace. Brought to the simulation's step by stated rules: positions linear, rotations slerp,
+/// buttons held; before the first and after the last sample the nearest is held. Sample times begin at 0.
+struct HapticSamples {               //  shape  unit
+  std::vector<double> t;             //  (n)    s     strictly growing
+  std::vector<Pose> pose;            //  (n)    m
   std::vector<std::uint8_t> button;  //  (n) or empty: held throughout
 };
 
@@ -24,27 +25,33 @@ struct HapticSamples {          //  shape  unit
 
 /// One leg of an operator's target path.
 struct HandWaypoint {
-  Pose pose;             ///< target of the hand, device coordinates
-  double speed = 0.1;    ///< m/s along the leg that ends here
-  double dwell = 0;      ///< s, waits after arriving
+  Pose pose;           ///< target of the hand, device coordinates
+  double speed = 0.1;  ///< m/s along the leg that ends here
+  double dwell = 0;    ///< s, waits after arriving
 };
 
 /// Devices.Hand{ … }: an operator. A point mass and inertia (the hand with the handle) is pulled by an impedance
-/// (spring and damper, its own muscles) towards a target that moves along a path with tremor, and feels the rendered wrench.
+/// (spring and damper, its own muscles) towards a target that moves along a path with tremor, and feels the rendered
+/// wrench. It does not push blindly: `lead` bounds how far the target runs ahead of a hand that is held up, and after
+/// `patience` it withdraws to the waypoint before and tries again with newly misjudged `error` (drawn uniformly within
+/// +-error per axis; the first try uses `error` itself).
 struct HandDescription {
   std::string name = "hand";
   std::vector<HandWaypoint> path;
-  bool repeat = false;             ///< after the last waypoint on to the first, until the run ends
-  double mass = 0.15;              ///< kg, fingers and handle
-  double inertia = 1e-4;           ///< kg m^2
-  double stiffness = 400;          ///< N/m
-  double damping = 15.5;           ///< N s/m (2 sqrt(k m))
-  double angular_stiffness = 2;    ///< N m/rad
-  double angular_damping = 0.0283; ///< N m s/rad
-  double tremor = 0;               ///< m rms, 8 to 12 Hz, each axis
-  double angular_tremor = 0;       ///< rad rms
-  Vector3d error = Vector3d::Zero();          ///< m, added to every target: misjudged place
-  Vector3d angular_error = Vector3d::Zero();  ///< rad, rotation vector
+  bool repeat = false;              ///< after the last waypoint on to the first, until the run ends
+  double mass = 0.15;               ///< kg, fingers and handle
+  double inertia = 1e-4;            ///< kg m^2
+  double stiffness = 400;           ///< N/m
+  double damping = 15.5;            ///< N s/m (2 sqrt(k m))
+  double angular_stiffness = 2;     ///< N m/rad
+  double angular_damping = 0.0283;  ///< N m s/rad
+  double lead = std::numeric_limits<double>::infinity();  ///< m; the target waits while it is further ahead of the hand
+  double patience =
+      std::numeric_limits<double>::infinity();  ///< s; after so long a wait back to the waypoint before, and again
+  double tremor = 0;                            ///< m rms, 8 to 12 Hz, each axis
+  double angular_tremor = 0;                    ///< rad rms
+  Vector3d error = Vector3d::Zero();            ///< m, added to every target: misjudged place
+  Vector3d angular_error = Vector3d::Zero();    ///< rad, rotation vector
   std::uint64_t seed = 1;
 };
 [[nodiscard]] std::shared_ptr<Device> make_hand(HandDescription description);

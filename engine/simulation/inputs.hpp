@@ -14,13 +14,14 @@ namespace verisim {
 
 class Inputs {
  public:
-  /// Reads from disk. Relative names are looked up in `folder`; a name that leads outside `folder` (after resolving links)
-  /// is refused unless it is below one of `also_allowed` (files and folders that the command line named).
+  /// Reads from disk. Relative names are looked up in `folder`; a name that leads outside `folder` (after resolving
+  /// links) is refused unless it is below one of `also_allowed` (files and folders that the command line named).
   static Inputs live(const std::string& folder, std::vector<std::string> also_allowed);
   /// Serves what a run file holds and nothing else.
   static Inputs stored(std::vector<InputFile> files, std::vector<StoredModel> models);
 
-  /// Content of a file, read once. Error(input): not there, not a file, outside the allowed folders (says which is allowed).
+  /// Content of a file, read once. Error(input): not there, not a file, outside the allowed folders (says which is
+  /// allowed).
   const std::string& read(const std::string& name);
   /// Is there such a file (and may it be read)?
   [[nodiscard]] bool exists(const std::string& name) const;

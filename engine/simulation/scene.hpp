@@ -17,32 +17,32 @@ enum class Hybrid { off, restore, blend, exact };
 
 /// defineSimulationParameters{…} (INTERFACES sections 2 and 3: names and defaults).
 struct SimulationParameters {
-  double timestep = 0.001;                   ///< s
-  Vector3d gravity = Vector3d::Zero();       ///< m/s^2
+  double timestep = 0.001;              ///< s
+  Vector3d gravity = Vector3d::Zero();  ///< m/s^2
   std::uint64_t seed = 1;
-  std::optional<double> duration;            ///< s; none: as long as the longest trace or operator task, else 1 s
-  double frame_rate = 60;                    ///< Hz, of the script's frames
+  std::optional<double> duration;  ///< s; none: as long as the longest trace or operator task, else 1 s
+  double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
   Hybrid hybrid = Hybrid::off;
-  double max_stiffness = 300;                ///< N/m, virtual coupling
-  double max_angular_stiffness = 0.1;        ///< N m/rad
-  bool all_bodies_are_dynamic = false;       ///< false: bodies that no device holds do not move
-  double contact_stiffness = 10000;          ///< N/m per contact, before the stability rule (contact/penalty.hpp)
-  double contact_damping_ratio = 0.5;        ///< of the critical damping of the contact stiffness in force
+  double max_stiffness = 300;           ///< N/m, virtual coupling
+  double max_angular_stiffness = 0.1;   ///< N m/rad
+  bool all_bodies_are_dynamic = false;  ///< false: bodies that no device holds do not move
+  double contact_stiffness = 10000;     ///< N/m per contact, before the stability rule (contact/penalty.hpp)
+  double contact_damping_ratio = 0.5;   ///< of the critical damping of the contact stiffness in force
 };
 
 struct BodyDescription {
   std::string name;
-  std::vector<Part> parts;                   ///< one or more solids that move as one; part coordinates = body coordinates
-  Pose X_WB;                                 ///< start pose
-  double density = 20;                       ///< kg/m^3 (SPARTA's usual)
-  double voxel_size = 0;                     ///< m
-  double point_spacing = 0;                  ///< m; 0: one point per surface voxel
+  std::vector<Part> parts;   ///< one or more solids that move as one; part coordinates = body coordinates
+  Pose X_WB;                 ///< start pose
+  double density = 20;       ///< kg/m^3 (SPARTA's usual)
+  double voxel_size = 0;     ///< m
+  double point_spacing = 0;  ///< m; 0: one point per surface voxel
   bool fixed = false;
   bool selectable = true;
-  bool use_brep = true;                      ///< brep=: hybrid methods may use its entities
-  std::optional<Hybrid> hybrid;              ///< none: the simulation's
-  Twist twist;                               ///< start velocity
+  bool use_brep = true;          ///< brep=: hybrid methods may use its entities
+  std::optional<Hybrid> hybrid;  ///< none: the simulation's
+  Twist twist;                   ///< start velocity
 };
 
 /// grasp(device, body): holds from the first frame, whatever the button says. Indices into Scene.
@@ -53,10 +53,10 @@ struct Grasp {
 
 struct Scene {
   SimulationParameters parameters;
-  std::vector<BodyDescription> bodies;                 ///< in the order of addObject
-  std::vector<std::shared_ptr<Device>> devices;        ///< in the order of addDevice: outermost filter of each chain
+  std::vector<BodyDescription> bodies;           ///< in the order of addObject
+  std::vector<std::shared_ptr<Device>> devices;  ///< in the order of addDevice: outermost filter of each chain
   std::vector<Grasp> grasps;
-  double grasp_distance = 0.1;                         ///< m, handle to body's nearest point, for button grasping
+  double grasp_distance = 0.1;  ///< m, handle to body's nearest point, for button grasping
 };
 
 }  // namespace verisim

@@ -1,4 +1,5 @@
-// The fixed-step simulation of a scene. Simulated time only; same scene, same bits, whatever the threads and SIMD target.
+// The fixed-step simulation of a scene. Simulated time only; same scene, same bits, whatever the threads and SIMD
+// target.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +20,12 @@ struct SimulationOptions {
 
 /// Work done in one frame; deterministic. One counter per kind of work (/cost).
 struct FrameCost {
-  std::uint64_t pairs_tested = 0;     ///< body pairs whose boxes overlap
+  std::uint64_t pairs_tested = 0;  ///< body pairs whose boxes overlap
   std::uint64_t clusters = 0;
   std::uint64_t points_tested = 0;
   std::uint64_t voxels_read = 0;
   std::uint64_t contacts = 0;
-  std::uint64_t lookups = 0;          ///< pairs of feature sets looked up
+  std::uint64_t lookups = 0;  ///< pairs of feature sets looked up
   std::uint64_t recognitions = 0;
 };
 
@@ -35,26 +36,26 @@ class Simulation {
   Simulation(Scene scene, const SimulationOptions& options);
   ~Simulation();
 
-  /// Advances from frame to frame + 1. Allocates nothing after the first call. Error(diverged) if a state stops being finite
-  /// (nothing of that frame is recorded).
+  /// Advances from frame to frame + 1. Allocates nothing after the first call. Error(diverged) if a state stops being
+  /// finite (nothing of that frame is recorded).
   void step();
 
-  [[nodiscard]] std::uint64_t frame() const;              ///< frames computed so far
-  [[nodiscard]] double time() const;                      ///< frame * dt
+  [[nodiscard]] std::uint64_t frame() const;  ///< frames computed so far
+  [[nodiscard]] double time() const;          ///< frame * dt
   [[nodiscard]] double dt() const;
-  [[nodiscard]] std::uint64_t frames_planned() const;     ///< from duration or the longest device
+  [[nodiscard]] std::uint64_t frames_planned() const;  ///< from duration or the longest device
   [[nodiscard]] std::uint64_t collision_frames() const;
-  [[nodiscard]] const FrameCost& cost() const;            ///< of the last frame
-  [[nodiscard]] std::uint64_t state_hash() const;         ///< after the last frame
+  [[nodiscard]] const FrameCost& cost() const;     ///< of the last frame
+  [[nodiscard]] std::uint64_t state_hash() const;  ///< after the last frame
 
   // Bodies, by index in Scene::bodies.
   [[nodiscard]] std::size_t body_count() const;
-  [[nodiscard]] int body_index(const std::string& name) const;   ///< -1: none
-  [[nodiscard]] Pose body_pose(std::size_t body) const;          ///< X_WB of the body coordinates
-  [[nodiscard]] Twist body_twist(std::size_t body) const;        ///< of the centre of mass
-  [[nodiscard]] Wrench body_force(std::size_t body) const;       ///< contact wrench of the last frame
+  [[nodiscard]] int body_index(const std::string& name) const;        ///< -1: none
+  [[nodiscard]] Pose body_pose(std::size_t body) const;               ///< X_WB of the body coordinates
+  [[nodiscard]] Twist body_twist(std::size_t body) const;             ///< of the centre of mass
+  [[nodiscard]] Wrench body_force(std::size_t body) const;            ///< contact wrench of the last frame
   [[nodiscard]] std::uint64_t body_contacts(std::size_t body) const;  ///< colliding voxel pairs of the last frame
-  void set_body_pose(std::size_t body, const Pose& X_WB);        ///< from scripts, between frames; velocity becomes zero
+  void set_body_pose(std::size_t body, const Pose& X_WB);  ///< from scripts, between frames; velocity becomes zero
   void grasp(std::size_t device, std::size_t body);
   void release(std::size_t device);
   [[nodiscard]] double mass(std::size_t body) const;
@@ -73,7 +74,7 @@ class Simulation {
 
   /// Energy ledger since the start [J] (dynamics/ledger.hpp).
   struct Energy {
-    double kinetic, coupling, gravity, dissipated, contact, input, residual;
+    double kinetic, coupling, gravity, dissipated, contact, input, numerical, residual;
   };
   [[nodiscard]] Energy energy() const;
 

@@ -1,0 +1,36 @@
+// Broad phase: which pairs of bodies are near enough to be queried. FCL's dynamic AABB tree over one box per body.
+//
+// World coordinates. Pairs come out as (i, j), i < j, in ascending order, so that later sums have an order; pairs that
+// were declared uninteresting (two bodies that cannot move) never come out. update() and find() allocate nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "engine/base/pose.hpp"
+
+namespace verisim {
+
+struct BroadPhaseBody {
+  Vector3d center_B;  ///< m, of the box around the body, body coordinates
+  Vector3d half_B;    ///< m, half sides, grown by what the narrow phase may reach beyond the surface
+  bool can_move;
+};
+
+class BroadPhase {
+ public:
+  explicit BroadPhase(const std::vector<BroadPhaseBody>& bodies);
+  ~BroadPhase();
+
+  void set_pose(std::size_t body, const Pose& X_WB);
+  /// The pairs of this frame; valid until the next call.
+  [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find();
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace verisim

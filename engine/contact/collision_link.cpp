@@ -1,0 +1,116 @@
+#include "engine/contact/collision_link.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verisim {
+namespace {
+
+/// Of the budget that is left, so much is used: W changes within a step, the rule holds for frozen W.
+constexpr double kSafety = 0.8;
+
+/// Upper bound of the largest eigenvalue of M^-1 W: the Frobenius norm of M^-1/2 W M^-1/2 = sqrt(trace((M^-1 W)^2)).
+double bound_of(const Matrix6d& inverse_mass, const Matrix6d& W) {
+  const Matrix6d P = inverse_mass * W;
+  return std::sqrt(std::max(0.0, P.cwiseProduct(P.transpose()).sum()));
+}
+
+/// J of a contact about another point: torque arms grow by `shift` (new arm = old arm + shift), so J' = T J.
+Matrix6d shift_of_arm(const Vector3d& shift) {
+  Matrix6d T = Matrix6d::Identity();
+  T.bottomLeftCorner<3, 3>() = skew(shift);
+  return T;
+}
+
+Matrix6d rotated(const Matrix6d& W, const Matrix3d& R) {
+  Matrix6d both = Matrix6d::Zero();
+  both.topLeftCorner<3, 3>() = R;
+  both.bottomRightCorner<3, 3>() = R;
+  return both * W * both.transpose();
+}
+
+/// The twist of a body, taken at another point.
+Vector6d twist_at(const LinkBody& body, const Vector3d& p_W) {
+  Vector6d u;
+  u << body.twist.linear + body.twist.angular.cross(p_W - body.p_WC), body.twist.angular;
+  return u;
+}
+
+}  // namespace
+
+CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
+    : first_is_map_(second.shell.size() <= first.shell.size()) {
+  map_ = first_is_map_ ? &first.voxmap : &second.voxmap;
+  shell_ = first_is_map_ ? &second.shell : &first.shell;
+  contacts_ = ContactList(shell_->size());
+}
+
+void CollisionLink::clear() {
+  contacts_.size = 0;
+  on_first_ = on_second_ = LinkSide();
+  depth_max_ = stiffness_ = 0;
+}
+
+void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
+  clear();
+  const Pose& X_WM = first_is_map_ ? X_W1 : X_W2;
+  const Pose& X_WP = first_is_map_ ? X_W2 : X_W1;
+  verisim::query(*map_, *shell_, X_WM.inverse() * X_WP, contacts_, cost);
+}
+
+void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+                            double dt) {
+  if (contacts_.size == 0) return;
+  const LinkBody& map = first_is_map_ ? first : second;
+  const LinkBody& points = first_is_map_ ? second : first;
+  const Matrix3d R_MW = map.X_WB.rotation.toRotationMatrix().transpose();
+  about_ = R_MW * (points.p_WC - map.X_WB.position) - map_->origin;
+  W_ = contact_matrix(contacts_, about_);
+
+  const Matrix6d W_points = rotated(W_, R_MW.transpose());
+  const Matrix6d T = shift_of_arm(points.p_WC - map.p_WC);
+  const double lambda =
+      bound_of(points.inverse_mass, W_points) + bound_of(map.inverse_mass, T * W_points * T.transpose());
+  const double zeta = parameters.damping_ratio;
+  stiffness_ = parameters.stiffness_max;
+  if (parameters.stabilize && lambda > 0) {
+    double budget = 4;
+    if (!points.inverse_mass.isZero(0)) budget = std::min(budget, points.budget);
+    if (!map.inverse_mass.isZero(0)) budget = std::min(budget, map.budget);
+    // With y = dt sqrt(k lambda) and b = 2 zeta sqrt(k / lambda), k dt^2 lambda + 2 b dt lambda is y^2 + 4 zeta y.
+    const double y = std::sqrt(4 * zeta * zeta + kSafety * budget) - 2 * zeta;
+    stiffness_ = std::min(stiffness_, y * y / (dt * dt * lambda));
+  }
+  damping_ = lambda > 0 ? 2 * zeta * std::sqrt(stiffness_ / lambda) : 0;
+
+  const Vector6d relative = twist_at(points, points.p_WC) - twist_at(map, points.p_WC);
+  apply_penalty(contacts_, about_, {R_MW * relative.head<3>(), R_MW * relative.tail<3>()}, stiffness_, damping_);
+}
+
+void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool matrices) {
+  if (contacts_.size == 0) return;
+  const LinkBody& map = first_is_map_ ? first : second;
+  const LinkBody& points = first_is_map_ ? second : first;
+  LinkSide& on_points = first_is_map_ ? on_second_ : on_first_;
+  LinkSide& on_map = first_is_map_ ? on_first_ : on_second_;
+  const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
+  const Vector3d arm = points.p_WC - map.p_WC;
+
+  const ContactSum total = sum(contacts_, about_);
+  depth_max_ = total.depth_max;
+  on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
+  on_map.wrench = {-on_points.wrench.force, -(on_points.wrench.torque + arm.cross(on_points.wrench.force))};
+  if (!matrices) return;
+
+  const Matrix6d W_points = rotated(W_, R_WM);
+  const Matrix6d T = shift_of_arm(arm);
+  const Matrix6d W_map = T * W_points * T.transpose();
+  on_points.stiffness = stiffness_ * W_points;
+  on_points.damping = damping_ * W_points;
+  on_points.drift = on_points.stiffness * twist_at(map, points.p_WC);
+  on_map.stiffness = stiffness_ * W_map;
+  on_map.damping = damping_ * W_map;
+  on_map.drift = on_map.stiffness * twist_at(points, map.p_WC);
+}
+
+}  // namespace verisim

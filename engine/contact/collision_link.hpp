@@ -1,0 +1,75 @@
+// One CollisionLink per pair of bodies: finds their contacts, lets others act on each contact's force, and sums them
+// (dissertation sections 6.4.2 and 8.5: detection split from response).
+//
+// Names: the pair is (first, second) in the order in which the scenario added them. One of the two provides the points
+// (the one with fewer, the second if equal), the other the voxmap; contact lists live in the body coordinates of the
+// voxmap's body, relative to its grid origin. What leaves the link is in world coordinates, on the second by the first.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/base/pose.hpp"
+#include "engine/contact/penalty.hpp"
+#include "engine/contact/query.hpp"
+#include "engine/voxel/voxmap.hpp"
+
+namespace verisim {
+
+/// What the link needs to know of a body in this frame.
+struct LinkBody {
+  Pose X_WB;
+  Vector3d p_WC;          ///< centre of mass
+  Twist twist;            ///< of the centre of mass
+  Matrix6d inverse_mass;  ///< world coordinates; zero for a body that does not move
+  double budget = 0;  ///< of the stability bound of 4 that this body leaves to this link; unused if it does not move
+};
+
+struct PenaltyParameters {
+  double stiffness_max = 1000;  ///< N/m per contact
+  double damping_ratio = 0.5;   ///< of critical
+  bool stabilize = true;        ///< apply the stability rule of penalty.hpp
+};
+
+/// One body's side of the response.
+struct LinkSide {
+  Wrench wrench;                          ///< on the body, about its centre of mass, world coordinates
+  Matrix6d stiffness = Matrix6d::Zero();  ///< K = k W about the centre of mass, world
+  Matrix6d damping = Matrix6d::Zero();    ///< D = b W
+  Vector6d drift = Vector6d::Zero();      ///< K times the other body's twist at this centre of mass
+};
+
+class CollisionLink {
+ public:
+  CollisionLink(const VoxelBody& first, const VoxelBody& second);
+
+  /// Detection: fills the contact list. No allocation.
+  void query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost);
+  [[nodiscard]] ContactList& contacts() { return contacts_; }
+  [[nodiscard]] const ContactList& contacts() const { return contacts_; }
+
+  /// Response, part one: stiffness by the stability rule and a penalty force for every contact.
+  void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
+  /// Response, part two: sums what the contacts' forces now are. `matrices`: fill stiffness, damping and drift too.
+  void sum_up(const LinkBody& first, const LinkBody& second, bool matrices);
+
+  [[nodiscard]] const LinkSide& on_first() const { return on_first_; }
+  [[nodiscard]] const LinkSide& on_second() const { return on_second_; }
+  [[nodiscard]] double depth_max() const { return depth_max_; }  ///< m
+  [[nodiscard]] double stiffness() const { return stiffness_; }  ///< N/m per contact, as the rule allowed
+  void clear();                                                  ///< no contact in this frame
+
+  /// Is the first body the one with the voxmap?
+  [[nodiscard]] bool first_is_map() const { return first_is_map_; }
+
+ private:
+  const Voxmap* map_;
+  const Pointshell* shell_;
+  bool first_is_map_;
+  ContactList contacts_;
+  Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
+  Vector3d about_ = Vector3d::Zero();
+  double stiffness_ = 0, damping_ = 0, depth_max_ = 0;
+  LinkSide on_first_, on_second_;
+};
+
+}  // namespace verisim

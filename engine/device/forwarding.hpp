@@ -1,0 +1,33 @@
+// The base of everything that wraps a device: forwards all calls (dissertation section 4.3.1); a filter overrides what
+// it changes.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "engine/device/device.hpp"
+
+namespace verisim {
+
+class ForwardingDevice : public Device {
+ public:
+  explicit ForwardingDevice(std::shared_ptr<Device> inner) : inner_(std::move(inner)) {}
+  [[nodiscard]] const std::string& name() const override { return inner_->name(); }
+  void sample(std::uint64_t frame, double t, double dt) override { inner_->sample(frame, t, dt); }
+  [[nodiscard]] const DeviceReading& reading() const override { return inner_->reading(); }
+  void render(const Wrench& wrench, double dt) override { inner_->render(wrench, dt); }
+  [[nodiscard]] const Wrench& rendered() const override { return inner_->rendered(); }
+  [[nodiscard]] double duration() const override { return inner_->duration(); }
+  [[nodiscard]] double travel() const override { return inner_->travel(); }
+  [[nodiscard]] bool driven() const override { return inner_->driven(); }
+  [[nodiscard]] Device& inner() { return *inner_; }
+
+ protected:
+  [[nodiscard]] const Device& inner() const { return *inner_; }
+
+ private:
+  std::shared_ptr<Device> inner_;
+};
+
+}  // namespace verisim

@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
+#include "engine/device/sources.hpp"
+
+namespace verisim {
+namespace {
+
+/// Physiological tremor: 8 to 12 Hz, here four sines per axis with random frequencies in that band and phases, so that
+/// it is a function of time alone.
+class Tremor {
+ public:
+  Tremor(std::uint64_t seed, const std::string& name, double rms) : amplitude_(rms * std::sqrt(2.0 / kSines)) {
+    const RandomStream stream(seed, name);
+    std::uint64_t counter = 0;
+    for (auto& axis : waves_)
+      for (Wave& wave : axis) {
+        wave.omega = 2 * pinned::kPi * (8 + 4 * stream.uniform(counter++));
+        wave.phase = 2 * pinned::kPi * stream.uniform(counter++);
+      }
+  }
+  [[nodiscard]] Vector3d at(double t) const {
+    if (amplitude_ == 0) return Vector3d::Zero();
+    Vector3d sum = Vector3d::Zero();
+    for (int axis = 0; axis < 3; ++axis)
+      for (const Wave& wave : waves_[static_cast<std::size_t>(axis)])
+        sum[axis] += pinned::sin(wave.omega * t + wave.phase);
+    return amplitude_ * sum;
+  }
+
+ private:
+  static constexpr int kSines = 4;
+  struct Wave {
+    double omega, phase;
+  };
+  double amplitude_;
+  std::array<std::array<Wave, kSines>, 3> waves_{};
+};
+
+/// A seconds' worth of leg: at least the time its length takes at its speed, or its angle at one radian per second.
+double leg_duration(const Pose& from, const HandWaypoint& to) {
+  const double angle = vector_from_rotation(from.rotation.conjugate() * to.pose.rotation).norm();
+  return std::max((to.pose.position - from.position).norm() / to.speed, angle / 1.0);
+}
+
+class HandDevice final : public Device {
+ public:
+  explicit HandDevice(HandDescription description)
+      : hand_(std::move(description)),
+        tremor_(hand_.seed, hand_.name + " tremor", hand_.tremor),
+        angular_tremor_(hand_.seed, hand_.name + " angular tremor", hand_.angular_tremor),
+        retries_(hand_.seed, hand_.name + " retries"),
+        error_(hand_.error),
+        angular_error_(hand_.angular_error) {
+    const Pose start = hand_.path.front().pose;
+    x_ = start.position + error_;
+    q_ = (rotation_from_vector(angular_error_) * start.rotation).normalized();
+    reading_.raw = reading_.handle = {x_, q_};
+  }
+
+  [[nodiscard]] const std::string& name() const override { return hand_.name; }
+  [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
+  [[nodiscard]] const Wrench& rendered() const override { return felt_; }
+  [[nodiscard]] bool driven() const override { return true; }
+  void render(const Wrench& wrench, double) override { felt_ = wrench; }
+
+  void sample(std::uint64_t frame, double t, double dt) override {
+    if (frame > 0) {
+      walk(dt);
+      pull(aimed(t), dt);
+    }
+    reading_.raw = reading_.handle = {x_, q_};
+  }
+
+  [[nodiscard]] double duration() const override {
+    if (hand_.repeat) return 0;
+    double total = 0;
+    for (std::size_t i = 0; i < hand_.path.size(); ++i)
+      total += hand_.path[i].dwell + (i == 0 ? 0 : leg_duration(hand_.path[i - 1].pose, hand_.path[i]));
+    return total + kSettling;
+  }
+  [[nodiscard]] double travel() const override {
+    double farthest = 0;
+    for (const HandWaypoint& w : hand_.path)
+      farthest = std::max(farthest, (w.pose.position - hand_.path.front().pose.position).norm());
+    // Twice the misjudgement (start and end may err oppositely), five sigma of tremor, and what contact may push it by.
+    return farthest + 2 * hand_.error.norm() + 5 * hand_.tremor + kPushed;
+  }
+
+ private:
+  static constexpr double kSettling = 1;   ///< s: the hand lags behind its target
+  static constexpr double kPushed = 0.05;  ///< m
+
+  /// Advances the target along the path; waits while the hand is held up, and withdraws when patience ends.
+  void walk(double dt) {
+    const HandWaypoint& to = hand_.path[goal_];
+    if (dwelling_ > 0) {
+      dwelling_ -= dt;
+      return;
+    }
+    if ((target().position + error_ - x_).norm() > hand_.lead) {
+      waited_ += dt;
+      if (waited_ > hand_.patience && goal_ != from_) retry();
+      return;
+    }
+    waited_ = 0;
+    along_ += dt;
+    if (along_ < leg_duration(hand_.path[from_].pose, to)) return;
+    dwelling_ = to.dwell;
+    from_ = goal_;
+    along_ = 0;
+    withdrawing_ = false;
+    if (goal_ + 1 < hand_.path.size())
+      ++goal_;
+    else if (hand_.repeat)
+      goal_ = 0;
+  }
+
+  /// Back to the waypoint before, with the place misjudged anew.
+  void retry() {
+    std::swap(from_, goal_);
+    along_ = std::max(0.0, leg_duration(hand_.path[from_].pose, hand_.path[goal_]) - along_);
+    if (!withdrawing_) {
+      const auto draw = [&] { return 2 * retries_.uniform(tries_++) - 1; };
+      error_ = hand_.error.cwiseProduct(Vector3d(draw(), draw(), draw()));
+      angular_error_ = hand_.angular_error.cwiseProduct(Vector3d(draw(), draw(), draw()));
+    }
+    withdrawing_ = !withdrawing_;
+    waited_ = 0;
+  }
+
+  [[nodiscard]] Pose target() const {
+    const Pose& a = hand_.path[from_].pose;
+    if (from_ == goal_) return a;
+    const double duration = leg_duration(a, hand_.path[goal_]);
+    const double s = duration > 0 ? std::min(1.0, along_ / duration) : 1.0;
+    const Pose& b = hand_.path[goal_].pose;
+    return {a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s)};
+  }
+
+  [[nodiscard]] Pose aimed(double t) const {
+    const Pose pose = target();
+    return {pose.position + error_ + tremor_.at(t),
+            (rotation_from_vector(angular_error_ + angular_tremor_.at(t)) * pose.rotation).normalized()};
+  }
+
+  /// The hand's own impedance towards the aim, and what it feels. Backward Euler: stable for any stiffness and mass.
+  void pull(const Pose& aim, double dt) {
+    const HandDescription& h = hand_;
+    v_ = (h.mass * v_ + dt * (h.stiffness * (aim.position - x_) + felt_.force)) /
+         (h.mass + dt * h.damping + dt * dt * h.stiffness);
+    x_ += dt * v_;
+    const Vector3d e = vector_from_rotation(aim.rotation * q_.conjugate());
+    w_ = (h.inertia * w_ + dt * (h.angular_stiffness * e + felt_.torque)) /
+         (h.inertia + dt * h.angular_damping + dt * dt * h.angular_stiffness);
+    q_ = (rotation_from_vector(dt * w_) * q_).normalized();
+  }
+
+  HandDescription hand_;
+  Tremor tremor_, angular_tremor_;
+  RandomStream retries_;
+  std::uint64_t tries_ = 0;
+  Vector3d error_, angular_error_;
+  std::size_t from_ = 0, goal_ = 0;  ///< the leg that is walked
+  double along_ = 0, dwelling_ = 0, waited_ = 0;
+  bool withdrawing_ = false;
+  Vector3d x_, v_ = Vector3d::Zero(), w_ = Vector3d::Zero();
+  Quaterniond q_;
+  DeviceReading reading_;
+  Wrench felt_;
+};
+
+void require(bool fine, const HandDescription& hand, const char* what) {
+  if (!fine) fail(ErrorKind::input, "hand '{}': {}", hand.name, what);
+}
+
+}  // namespace
+
+std::shared_ptr<Device> make_hand(HandDescription hand) {
+  const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
+  const auto not_negative = [](double v) { return std::isfinite(v) && v >= 0; };
+  require(!hand.path.empty(), hand, "path has no waypoints; give at least one");
+  for (const HandWaypoint& w : hand.path) {
+    require(w.pose.position.allFinite() && w.pose.rotation.coeffs().allFinite(), hand, "a waypoint is not finite");
+    require(positive(w.speed), hand, "a waypoint's speed must be finite and above 0 m/s");
+    require(not_negative(w.dwell), hand, "a waypoint's dwell must be finite and not negative");
+  }
+  require(positive(hand.mass) && positive(hand.inertia), hand, "mass and inertia must be finite and above 0");
+  require(not_negative(hand.stiffness) && not_negative(hand.damping), hand,
+          "stiffness and damping must not be negative");
+  require(not_negative(hand.angular_stiffness) && not_negative(hand.angular_damping), hand,
+          "angularStiffness and angularDamping must not be negative");
+  require(not_negative(hand.tremor) && not_negative(hand.angular_tremor), hand, "tremor must not be negative");
+  require(hand.lead > 0 && hand.patience > 0, hand, "lead and patience must be above 0");
+  require(hand.error.allFinite() && hand.angular_error.allFinite(), hand, "error is not finite");
+  return std::make_shared<HandDevice>(std::move(hand));
+}
+
+}  // namespace verisim

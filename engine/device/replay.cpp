@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/device/sources.hpp"
+
+namespace verisim {
+namespace {
+
+class ReplayDevice final : public Device {
+ public:
+  ReplayDevice(std::string name, HapticSamples samples) : name_(std::move(name)), samples_(std::move(samples)) {
+    reading_.raw = reading_.handle = samples_.pose.front();
+    for (const Pose& pose : samples_.pose)
+      travel_ = std::max(travel_, (pose.position - samples_.pose.front().position).norm());
+  }
+
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+  void sample(std::uint64_t, double t, double) override {
+    const auto& times = samples_.t;
+    while (next_ < times.size() && times[next_] <= t) ++next_;
+    const std::size_t before = next_ == 0 ? 0 : next_ - 1;
+    if (next_ == 0 || next_ == times.size()) {
+      reading_.handle = samples_.pose[before];
+    } else {
+      const double s = (t - times[before]) / (times[next_] - times[before]);
+      const Pose& a = samples_.pose[before];
+      const Pose& b = samples_.pose[next_];
+      reading_.handle = {a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s)};
+    }
+    reading_.raw = reading_.handle;
+    reading_.button = samples_.button.empty() || samples_.button[before] != 0;
+  }
+  [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
+  void render(const Wrench& wrench, double) override { rendered_ = wrench; }
+  [[nodiscard]] const Wrench& rendered() const override { return rendered_; }
+  [[nodiscard]] double duration() const override { return samples_.t.back(); }
+  [[nodiscard]] double travel() const override { return travel_; }
+  [[nodiscard]] bool driven() const override { return true; }
+
+ private:
+  std::string name_;
+  HapticSamples samples_;
+  std::size_t next_ = 0;  ///< first sample later than the last t: time only goes forward
+  double travel_ = 0;
+  DeviceReading reading_;
+  Wrench rendered_;
+};
+
+}  // namespace
+
+std::shared_ptr<Device> make_replay(std::string name, HapticSamples samples) {
+  if (samples.t.empty()) fail(ErrorKind::input, "device '{}': its trace has no samples", name);
+  VERISIM_ASSERT(samples.pose.size() == samples.t.size());
+  VERISIM_ASSERT(samples.button.empty() || samples.button.size() == samples.t.size());
+  return std::make_shared<ReplayDevice>(std::move(name), std::move(samples));
+}
+
+}  // namespace verisim

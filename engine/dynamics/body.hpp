@@ -1,0 +1,55 @@
+// A rigid body: constant mass properties and the state that an integrator advances. The state is that of the centre of
+// mass C, because Newton and Euler's equations are simplest there; the pose of the body coordinates B follows from it.
+#pragma once
+
+#include <string>
+
+#include "engine/base/pose.hpp"
+
+namespace verisim {
+
+struct RigidBody {
+  // constant
+  double mass = 0;                        ///< kg, > 0
+  Matrix3d inertia_B = Matrix3d::Zero();  ///< kg m^2, about C, axes of B
+  Matrix3d inertia_inverse_B = Matrix3d::Zero();
+  Vector3d p_BC = Vector3d::Zero();  ///< m, centre of mass in body coordinates
+
+  // state, world coordinates
+  Vector3d p_WC = Vector3d::Zero();  ///< m
+  Quaterniond R_WB = Quaterniond::Identity();
+  Vector3d v_C = Vector3d::Zero();    ///< m/s
+  Vector3d omega = Vector3d::Zero();  ///< rad/s
+
+  [[nodiscard]] Pose pose() const { return {p_WC - R_WB * p_BC, R_WB}; }
+  void set_pose(const Pose& X_WB) {
+    R_WB = X_WB.rotation;
+    p_WC = X_WB * p_BC;
+  }
+  [[nodiscard]] Matrix3d inertia_W() const {
+    const Matrix3d R = R_WB.toRotationMatrix();
+    return R * inertia_B * R.transpose();
+  }
+  [[nodiscard]] Matrix3d inertia_inverse_W() const {
+    const Matrix3d R = R_WB.toRotationMatrix();
+    return R * inertia_inverse_B * R.transpose();
+  }
+  /// M^-1 = diag(1/m, I_W^-1), world coordinates about C.
+  [[nodiscard]] Matrix6d inverse_mass_matrix() const;
+  [[nodiscard]] double kinetic_energy() const;  ///< J
+  [[nodiscard]] bool is_finite() const;
+};
+
+/// A body of the given volume properties and density. The inertia's smallest principal value is raised to 1e-6 of the
+/// largest, so that a needle can still be integrated. Error(input) naming `name` if mass or inertia are not finite and
+/// positive.
+[[nodiscard]] RigidBody make_body(const std::string& name, double volume, const Vector3d& centroid,
+                                  const Matrix3d& inertia_per_density, double density);
+
+/// The symmetric square root of a symmetric positive semidefinite matrix (for critical damping per principal axis).
+[[nodiscard]] Matrix3d square_root(const Matrix3d& m);
+
+/// The smallest eigenvalue of a symmetric matrix.
+[[nodiscard]] double smallest_eigenvalue(const Matrix3d& m);
+
+}  // namespace verisim

@@ -1,0 +1,60 @@
+#include "engine/dynamics/coupling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verisim {
+namespace {
+
+/// Shortens spring and damper together so that their sum is no longer than `limit`.
+bool saturate(Vector3d& spring, Vector3d& damper, double limit) {
+  const double length = (spring + damper).norm();
+  if (!(length > limit)) return false;
+  spring *= limit / length;
+  damper *= limit / length;
+  return true;
+}
+
+double share_of(double x) {
+  return x * x + 4 * x;
+}
+
+}  // namespace
+
+Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize) {
+  const double inertia_min = smallest_eigenvalue(body.inertia_B);
+  const double x_max = std::sqrt(4 + kCouplingShare) - 2;  // x^2 + 4x = kCouplingShare
+  const double bound = x_max * x_max / (dt * dt);
+  Coupling c;
+  c.stiffness = stabilize ? std::min(limits.stiffness_max, bound * body.mass) : limits.stiffness_max;
+  c.angular_stiffness =
+      stabilize ? std::min(limits.angular_stiffness_max, bound * inertia_min) : limits.angular_stiffness_max;
+  c.damping = 2 * std::sqrt(c.stiffness * body.mass);
+  c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
+  c.share = std::max(share_of(dt * std::sqrt(c.stiffness / body.mass)),
+                     share_of(dt * std::sqrt(c.angular_stiffness / inertia_min)));
+  c.force_max = limits.force_max;
+  c.torque_max = limits.torque_max;
+  return c;
+}
+
+CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
+  CouplingForce f;
+  const Matrix3d R = body.R_WB.toRotationMatrix();
+  f.d = target.p_WC - body.p_WC;
+  f.e = vector_from_rotation(target.R_WB * body.R_WB.conjugate());
+  f.spring = {coupling.stiffness * f.d, coupling.angular_stiffness * f.e};
+  f.damper = {coupling.damping * (target.v_C - body.v_C),
+              R * (coupling.angular_damping_B * (R.transpose() * (target.omega - body.omega)))};
+  f.force_saturated = saturate(f.spring.force, f.damper.force, coupling.force_max);
+  f.torque_saturated = saturate(f.spring.torque, f.damper.torque, coupling.torque_max);
+  return f;
+}
+
+double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
+  const Vector3d d = target.p_WC - body.p_WC;
+  const Vector3d e = vector_from_rotation(target.R_WB * body.R_WB.conjugate());
+  return 0.5 * coupling.stiffness * d.squaredNorm() + 0.5 * coupling.angular_stiffness * e.squaredNorm();
+}
+
+}  // namespace verisim

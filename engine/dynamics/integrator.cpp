@@ -1,0 +1,147 @@
+#include "engine/dynamics/integrator.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace verisim {
+namespace {
+
+/// A twist as one column (v, omega), a wrench as one column (force, torque).
+Vector6d stacked(const Vector3d& linear, const Vector3d& angular) {
+  Vector6d column;
+  column << linear, angular;
+  return column;
+}
+Vector6d stacked(const Wrench& w) {
+  return stacked(w.force, w.torque);
+}
+Wrench wrench_of(const Vector6d& column) {
+  return {column.head<3>(), column.tail<3>()};
+}
+
+/// The motion of one step: u1 = (v1, omega*), with omega* the angular velocity that I0 and the new angular momentum
+/// give.
+struct Motion {
+  Vector6d before;
+  Vector6d during;
+  double numerical;  ///< kinetic energy that the step itself lost
+};
+
+/// Moves the body along `during` for dt. Angular momentum is kept while the orientation, and so I_W, changes.
+Motion advance(RigidBody& body, const Vector6d& during, double dt) {
+  const Vector6d before = stacked(body.v_C, body.omega);
+  const Matrix3d I0 = body.inertia_W();
+  const Vector3d v1 = during.head<3>();
+  const Vector3d omega_star = during.tail<3>();
+  const Vector3d L1 = I0 * omega_star;
+  body.v_C = v1;
+  body.p_WC += dt * v1;
+  body.R_WB = (rotation_from_vector(dt * omega_star) * body.R_WB).normalized();
+  body.omega = body.inertia_inverse_W() * L1;
+
+  const Vector3d dv = v1 - before.head<3>();
+  const Vector3d domega = omega_star - before.tail<3>();
+  // F dt . v1 = change of kinetic energy + m |dv|^2 / 2 (exact for velocity-first steps), likewise for rotation; and
+  // the rotation changes I at constant L.
+  const double turned = 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1);
+  return {before, during, 0.5 * body.mass * dv.squaredNorm() + 0.5 * domega.dot(I0 * domega) + turned};
+}
+
+/// Works of the loads over the displacement dt * during, given the wrenches that were really applied.
+StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion, const Wrench& spring,
+                 const Wrench& damper, const Wrench& contact, double energy_before, double dt) {
+  StepWork work;
+  const Vector6d moved = dt * motion.during;
+  work.contact = contact;
+  work.external = stacked(loads.external).dot(moved);
+  work.contact_work = stacked(contact).dot(moved);
+  work.numerical = motion.numerical;
+  if (loads.coupling == nullptr) return work;
+
+  const Vector6d target_moved = dt * stacked(loads.target.v_C, loads.target.omega);
+  work.coupling = {spring.force + damper.force, spring.torque + damper.torque};
+  work.input = stacked(damper).dot(target_moved);
+  work.damper = stacked(damper).dot(target_moved - moved);
+  const double stored = coupling_energy(*loads.coupling, body, loads.target) - energy_before;
+  work.numerical -= stacked(spring).dot(moved) + stored;
+  return work;
+}
+
+double stored_before(const RigidBody& body, const Loads& loads) {
+  return loads.coupling == nullptr ? 0 : coupling_energy(*loads.coupling, body, loads.target);
+}
+
+}  // namespace
+
+StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
+  const double energy_before = stored_before(body, loads);
+  const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
+  const Wrench damper = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.damper;
+  const Vector3d force = loads.external.force + loads.contact.force + spring.force + damper.force;
+  const Vector3d torque = loads.external.torque + loads.contact.torque + spring.torque + damper.torque;
+  const Vector6d during =
+      stacked(body.v_C + dt / body.mass * force, body.omega + dt * (body.inertia_inverse_W() * torque));
+  const Motion motion = advance(body, during, dt);
+  return account(body, loads, motion, spring, damper, loads.contact, energy_before, dt);
+}
+
+namespace {
+
+/// Stiffness and damping of the coupling at this orientation; a saturated half is constant and has neither.
+void coupling_matrices(const RigidBody& body, const Loads& loads, Matrix6d& K, Matrix6d& D) {
+  K.setZero();
+  D.setZero();
+  if (loads.coupling == nullptr) return;
+  if (!loads.coupling_at_start.force_saturated) {
+    K.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->stiffness);
+    D.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->damping);
+  }
+  if (!loads.coupling_at_start.torque_saturated) {
+    const Matrix3d R = body.R_WB.toRotationMatrix();
+    K.bottomRightCorner<3, 3>().diagonal().setConstant(loads.coupling->angular_stiffness);
+    D.bottomRightCorner<3, 3>() = R * loads.coupling->angular_damping_B * R.transpose();
+  }
+}
+
+}  // namespace
+
+StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
+  const double energy_before = stored_before(body, loads);
+  Matrix6d K;
+  Matrix6d D;
+  coupling_matrices(body, loads, K, D);
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  const Vector6d spring0 = loads.coupling == nullptr ? Vector6d::Zero() : stacked(loads.coupling_at_start.spring);
+  const Vector6d damper0 = loads.coupling == nullptr ? Vector6d::Zero() : stacked(loads.coupling_at_start.damper);
+  const Vector6d contact0 = stacked(loads.contact);
+
+  Matrix6d M = Matrix6d::Zero();
+  M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
+  M.bottomRightCorner<3, 3>() = body.inertia_W();
+
+  // f1 = f0 - dt K u1 - D (u1 - u0) for each load; collected for u1.
+  const auto solve = [&](bool with_contact) {
+    Matrix6d A = M + dt * D + dt * dt * K;
+    Vector6d rhs = M * u0 + dt * (stacked(loads.external) + spring0 + damper0 + D * u0);
+    if (with_contact) {
+      A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
+      rhs += dt * (contact0 + dt * loads.contact_drift + loads.contact_damping * u0);
+    }
+    return Vector6d(A.llt().solve(rhs));
+  };
+  Vector6d u1 = solve(true);
+  const auto contact_at_end = [&](const Vector6d& u) {
+    return Vector6d(contact0 + dt * (loads.contact_drift - loads.contact_stiffness * u) -
+                    loads.contact_damping * (u - u0));
+  };
+  Vector6d contact1 = contact_at_end(u1);
+  if (contact1.dot(contact0) < 0) {  // a contact pushes; one that would pull by the end of the step has let go
+    u1 = solve(false);
+    contact1.setZero();
+  }
+  const Wrench spring = wrench_of(spring0 - dt * (K * u1));
+  const Wrench damper = wrench_of(damper0 + D * (u0 - u1));
+  const Motion motion = advance(body, u1, dt);
+  return account(body, loads, motion, spring, damper, wrench_of(contact1), energy_before, dt);
+}
+
+}  // namespace verisim

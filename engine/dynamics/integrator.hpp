@@ -1,0 +1,48 @@
+// Advancing one rigid body by one step, from the loads of that step. Two integrators, one interface.
+//
+// semi_implicit   velocity first, then position with the new velocity (symplectic Euler); all loads explicit. Stable
+// while
+//                 the sum of the shares of coupling and contact stays below 4 (ORACLES section 2); both limit
+//                 themselves.
+// linearly implicit   spring, damper and contact are taken at the end of the step, linearised once:
+//                 (M + dt D + dt^2 K) u1 = M u0 + dt (f(x0, u0) + D u0),   u = (v, omega)
+//                 with K, D of coupling and contact. Stable for any stiffness (backward Euler); it damps. One 6 x 6
+//                 Cholesky solve. The coupling's target stands still during the step, where the handle was sampled.
+//
+// Rotation keeps angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then omega = I1^-1 L1.
+// Spin energy stays below |L|^2 / (2 I_min) whatever the speed: a fast needle cannot blow up.
+#pragma once
+
+#include "engine/base/pose.hpp"
+#include "engine/dynamics/body.hpp"
+#include "engine/dynamics/coupling.hpp"
+
+namespace verisim {
+
+/// What acts on a body during one step; world coordinates, about its centre of mass.
+struct Loads {
+  Wrench external;                                ///< gravity and the like: constant over the step
+  Wrench contact;                                 ///< at the start of the step
+  Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
+  Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
+  Vector6d contact_drift = Vector6d::Zero();  ///< sum of K times the twist of the other body at C: a wall that moves
+  const Coupling* coupling = nullptr;         ///< null: not held
+  CouplingForce coupling_at_start;
+  CouplingTarget target;
+};
+
+/// What the loads did during the step [J, and the wrenches that were really applied].
+struct StepWork {
+  Wrench coupling;          ///< on the body
+  Wrench contact;           ///< on the body
+  double external = 0;      ///< work on the body
+  double contact_work = 0;  ///< work on the body
+  double damper = 0;        ///< dissipated in the coupling's damper, relative to the target's motion
+  double input = 0;         ///< put in by the hand through the damper; through the spring: see Ledger::add_jump
+  double numerical = 0;     ///< lost (or gained, < 0) by the discretization itself: see ledger.hpp
+};
+
+[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
+[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
+
+}  // namespace verisim

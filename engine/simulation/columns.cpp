@@ -1,0 +1,121 @@
+// What a row of a run file holds (INTERFACES section 2), in one table: make_schema names the columns, fill_row fills
+// them in the same order. The row's state bytes, chained to the hash of the row before, are the state hash.
+#include <cstring>
+
+#include "engine/base/hash.hpp"
+#include "engine/simulation/world.hpp"
+
+namespace verisim {
+namespace {
+
+const std::vector<std::string> kConstraintNames = {"none",      "planar",  "cylindrical", "conical",
+                                                   "spherical", "annular", "other"};
+
+/// Appends values to a row in the order of the schema's columns.
+class RowWriter {
+ public:
+  explicit RowWriter(std::vector<std::byte>& row) : at_(row.data()) {}
+  template <typename T>
+  void put(T value) {
+    std::memcpy(at_, &value, sizeof value);
+    at_ += sizeof value;
+  }
+  void put(const Vector3d& v) {
+    for (int i = 0; i < 3; ++i) put(v[i]);
+  }
+  void put(const Pose& X) {
+    put(X.position);
+    for (const double q : {X.rotation.x(), X.rotation.y(), X.rotation.z(), X.rotation.w()}) put(q);
+  }
+  void put(const Wrench& w) {
+    put(w.force);
+    put(w.torque);
+  }
+  [[nodiscard]] const std::byte* at() const { return at_; }
+
+ private:
+  std::byte* at_;
+};
+
+}  // namespace
+
+void Simulation::Implementation::make_schema() {
+  const auto add = [&](const std::string& path, Dtype dtype, std::size_t width, const char* units, const char* what) {
+    schema.add({path, dtype, width, units, what, 0, {}});
+  };
+  add("/state/time", Dtype::f64, 1, "s", "simulated time at the end of the frame");
+  for (const Body& body : bodies) {
+    const std::string path = "/state/body/" + body.name;
+    add(path + "/pose", Dtype::f64, 7, "m, 1", "world pose of the body coordinates: position, quaternion x y z w");
+    add(path + "/twist", Dtype::f64, 6, "m/s, rad/s", "velocity of the centre of mass, angular velocity; world");
+    add(path + "/force", Dtype::f64, 6, "N, N m", "contact wrench on the body about its centre of mass; world");
+  }
+  for (const auto& device : devices) {
+    const std::string path = "/state/device/" + device->name();
+    add(path + "/handle_pose", Dtype::f64, 7, "m, 1", "virtual handle: position, quaternion x y z w");
+    add(path + "/raw_pose", Dtype::f64, 7, "m, 1", "what the hardware reports: position, quaternion x y z w");
+    add(path + "/wrench", Dtype::f64, 6, "N, N m", "what the hardware is told to render, about the handle");
+  }
+  for (const Link& link : links) {
+    const std::string path = "/state/link/" + bodies[link.first].name + "~" + bodies[link.second].name;
+    add(path + "/contacts", Dtype::u32, 1, "1", "colliding voxel pairs");
+    add(path + "/cache_hits", Dtype::u32, 1, "1", "constraint look-ups that were memoized");
+    add(path + "/cache_misses", Dtype::u32, 1, "1", "constraint look-ups that had to be recognized");
+    schema.add({path + "/constraint", Dtype::u8, 1, "1", "strongest recognized constraint", 0, kConstraintNames});
+    add(path + "/alignment", Dtype::f64, 1, "1", "alignment alpha of that constraint");
+    add(path + "/max_penetration", Dtype::f64, 1, "m", "deepest contact");
+    add(path + "/wrench", Dtype::f64, 6, "N, N m",
+        "on the second body by the first, about the second's centre of mass; world");
+  }
+  add("/state/energy", Dtype::f64, 8, "J",
+      "kinetic, coupling springs, gravity, dissipated, given to contact, numerical, input by hands, residual of their "
+      "balance");
+  add("/state/hash", Dtype::u64, 1, "1",
+      "XXH3-64 of all values of /state in this row, seeded with the hash of the row before");
+  add("/cost/pairs_tested", Dtype::u32, 1, "1", "pairs of bodies queried");
+  add("/cost/clusters", Dtype::u32, 1, "1", "clusters of points looked at");
+  add("/cost/points_tested", Dtype::u32, 1, "1", "points transformed and looked up");
+  add("/cost/voxels_read", Dtype::u32, 1, "1", "voxels read");
+  add("/cost/contacts", Dtype::u32, 1, "1", "contacts found");
+  add("/cost/lookups", Dtype::u32, 1, "1", "pairs of feature sets looked up");
+  add("/cost/recognitions", Dtype::u32, 1, "1", "pairs of feature sets recognized");
+  row.assign(schema.row_bytes(), std::byte{0});
+}
+
+void Simulation::Implementation::fill_row() {
+  RowWriter out(row);
+  out.put(static_cast<double>(frame) * dt);
+  for (const Body& body : bodies) {
+    out.put(body.rigid.pose());
+    out.put(body.rigid.v_C);
+    out.put(body.rigid.omega);
+    out.put(body.contact_wrench);
+  }
+  for (const auto& device : devices) {
+    out.put(device->reading().handle);
+    out.put(device->reading().raw);
+    out.put(device->rendered());
+  }
+  for (const Link& link : links) {
+    const CollisionLink* contact = link.contact.get();
+    out.put(contact != nullptr ? contact->contacts().size : 0U);
+    out.put(link.cache_hits);
+    out.put(link.cache_misses);
+    out.put(std::uint8_t{0});
+    out.put(0.0);
+    out.put(contact != nullptr ? contact->depth_max() : 0.0);
+    out.put(contact != nullptr ? contact->on_second().wrench : Wrench{});
+  }
+  for (const double e : {energy.kinetic, energy.coupling, energy.gravity, ledger.dissipated(), ledger.contact(),
+                         ledger.numerical(), ledger.input(), ledger.residual(energy)})
+    out.put(e);
+  VERISIM_ASSERT(out.at() == row.data() + schema.state_bytes());
+  hash = hash_bytes(row.data(), schema.state_bytes(), hash);
+  out.put(hash);
+  for (const std::uint64_t count : {cost.pairs_tested, cost.clusters, cost.points_tested, cost.voxels_read,
+                                    cost.contacts, cost.lookups, cost.recognitions})
+    out.put(static_cast<std::uint32_t>(count));
+  VERISIM_ASSERT(out.at() == row.data() + row.size());
+}
+
+}  // namespace verisim

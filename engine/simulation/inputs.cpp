@@ -1,0 +1,137 @@
+#include "engine/simulation/inputs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "engine/base/error.hpp"
+#include "engine/base/hash.hpp"
+
+namespace verisim {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const auto [at_folder, at_path] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  (void)at_path;
+  return at_folder == folder.end() || (std::next(at_folder) == folder.end() && at_folder->empty());
+}
+
+std::string content_of(const std::string& name, const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error))
+    fail(ErrorKind::input, "{}: there is no such file; check the name and the folder", name);
+  if (fs::is_directory(path, error)) fail(ErrorKind::input, "{}: is a folder, a file is wanted", name);
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (!in) fail(ErrorKind::input, "{}: cannot be read; check its permissions", name);
+  return content.str();
+}
+
+std::string options_key(const LoadOptions& o) {
+  return fmt::format("scale={} deflection={} angle={}", o.scale, o.deflection, o.angular_deflection);
+}
+
+}  // namespace
+
+Inputs Inputs::live(const std::string& folder, std::vector<std::string> also_allowed) {
+  Inputs inputs;
+  inputs.folder_ = fs::weakly_canonical(folder.empty() ? "." : folder).string();
+  inputs.allowed_.push_back(inputs.folder_);
+  for (const std::string& path : also_allowed) inputs.allowed_.push_back(fs::weakly_canonical(path).string());
+  return inputs;
+}
+
+Inputs Inputs::stored(std::vector<InputFile> files, std::vector<StoredModel> models) {
+  Inputs inputs;
+  inputs.live_ = false;
+  for (InputFile& file : files) {
+    inputs.order_.push_back(file.name);
+    inputs.contents_[file.name] = std::move(file.content);
+  }
+  for (StoredModel& model : models) {
+    std::vector<Part> parts;
+    for (const auto& [name, tables] : model.parts) parts.push_back(from_tables(name, tables));
+    inputs.remember(model.key, std::move(parts));
+  }
+  return inputs;
+}
+
+std::string Inputs::resolve(const std::string& name) const {
+  const fs::path given(name);
+  const fs::path path = fs::weakly_canonical(given.is_absolute() ? given : fs::path(folder_) / given);
+  for (const std::string& folder : allowed_)
+    if (is_below(path, folder)) return path.string();
+  fail(ErrorKind::input,
+       "{}: lies outside the scenario's folder; only that folder and files named on the command line may be read",
+       name);
+}
+
+bool Inputs::exists(const std::string& name) const {
+  if (contents_.count(name) != 0) return true;
+  if (!live_) return false;
+  try {
+    std::error_code error;
+    return fs::is_regular_file(resolve(name), error);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+const std::string& Inputs::read(const std::string& name) {
+  const auto known = contents_.find(name);
+  if (known != contents_.end()) return known->second;
+  if (!live_) fail(ErrorKind::input, "{}: is not among the run file's inputs; the run was recorded without it", name);
+  std::string content = content_of(name, resolve(name));
+  order_.push_back(name);
+  return contents_[name] = std::move(content);
+}
+
+const std::vector<Part>& Inputs::remember(const std::string& key, std::vector<Part> parts) {
+  model_order_.push_back(key);
+  return parts_[key] = std::move(parts);
+}
+
+const std::vector<Part>& Inputs::model(const std::string& name, const LoadOptions& options) {
+  const std::string key = name + " " + options_key(options);
+  const auto known = parts_.find(key);
+  if (known != parts_.end()) return known->second;
+  if (!live_) fail(ErrorKind::input, "{}: is not among the run file's models; the run was recorded without it", name);
+  return remember(key, load_model(name, read(name), options));
+}
+
+const Part& Inputs::solid(const Solid& solid, const LoadOptions& options) {
+  const std::string key = solid.text() + " " + options_key(options);
+  const auto known = parts_.find(key);
+  if (known != parts_.end()) return known->second.front();
+  if (!live_)
+    fail(ErrorKind::input, "{}: is not among the run file's solids; the run was recorded without it", solid.text());
+  std::vector<Part> parts;
+  parts.push_back(load_solid(solid, options));
+  return remember(key, std::move(parts)).front();
+}
+
+std::vector<InputFile> Inputs::files() const {
+  std::vector<InputFile> files;
+  for (const std::string& name : order_) {
+    const std::string& content = contents_.at(name);
+    files.push_back({name, sha256(content), content, true});
+  }
+  return files;
+}
+
+std::vector<StoredModel> Inputs::models() const {
+  std::vector<StoredModel> models;
+  for (const std::string& key : model_order_) {
+    StoredModel model;
+    model.key = key;
+    for (const Part& part : parts_.at(key)) model.parts.emplace_back(part.name, to_tables(part));
+    models.push_back(std::move(model));
+  }
+  return models;
+}
+
+}  // namespace verisim

@@ -1,0 +1,160 @@
+// The order of one frame. To change it is to change every golden hash.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.hpp"
+#include "engine/simulation/world.hpp"
+
+namespace verisim {
+
+void Simulation::step() {
+  Implementation& w = *implementation_;
+  const double t = static_cast<double>(w.frame) * w.dt;  // never t += dt: its roundings pile up
+  w.sample_devices(t);                                   // raw pose -> virtual handle
+  w.update_grasps();
+  w.pull();            // virtual coupling
+  w.query_contacts();  // broad phase, then pointshell against voxmap
+  w.respond();         // penalty force of every contact, summed in pair order
+  w.integrate();
+  w.render();  // coupling wrench -> what the hardware is told to render
+  ++w.frame;
+  w.clocks.run_due(w.frame,
+                   static_cast<double>(w.frame) * w.dt);  // script, trackers, firmware: same thread, fixed order
+  w.take_stock();                                         // energies, totals, the row and its hash
+}
+
+void Simulation::Implementation::sample_devices(double t) {
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    devices[d]->sample(frame, t, dt);
+    const Pose& handle = devices[d]->reading().handle;
+    if (!handle.position.allFinite() || !handle.rotation.coeffs().allFinite())
+      fail(ErrorKind::diverged, "frame {}: the handle of device '{}' is not finite", frame, devices[d]->name());
+    if (!held[d].sampled) held[d].handle_before = handle;
+    held[d].sampled = true;
+  }
+}
+
+/// Gathers what acts on each body besides contact. Whatever changed the energy since the last frame's end was the hand
+/// (it moved the handle), a grasp or a script.
+void Simulation::Implementation::pull() {
+  ledger.add_jump(energy_now().sum() - energy.sum());
+  for (Body& body : bodies) {
+    body.loads.external = {};
+    body.loads.coupling = nullptr;
+    body.contacts = 0;
+    if (!body.can_move) continue;
+    if (parameters.all_bodies_are_dynamic) body.loads.external.force = body.rigid.mass * parameters.gravity;
+    if (body.held_by == kNone) continue;
+    body.loads.coupling = &body.coupling;
+    body.loads.target = target_of(body.held_by);
+    body.loads.coupling_at_start = coupling_force(body.coupling, body.rigid, body.loads.target);
+  }
+}
+
+void Simulation::Implementation::query_contacts() {
+  cost = FrameCost();
+  for (Link& link : links) link.near = false;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].can_move) broad_phase->set_pose(i, bodies[i].rigid.pose());
+  for (const auto& [i, j] : broad_phase->find()) {
+    Link& link = links[link_of_pair[i * bodies.size() + j]];
+    if (!link.contact) continue;
+    link.near = true;
+    ++cost.pairs_tested;
+    QueryCost work;
+    link.contact->query(bodies[i].rigid.pose(), bodies[j].rigid.pose(), work);
+    cost.clusters += work.clusters;
+    cost.points_tested += work.points;
+    cost.voxels_read += work.points;
+    const std::uint32_t contacts = link.contact->contacts().size;
+    cost.contacts += contacts;
+    bodies[i].contacts += contacts;
+    bodies[j].contacts += contacts;
+  }
+  for (Link& link : links)
+    if (!link.near && link.contact) link.contact->clear();
+  if (cost.contacts > 0) ++collision_frames;
+}
+
+void Simulation::Implementation::respond() {
+  for (Body& body : bodies) {
+    body.links_touching = 0;
+    body.loads.contact = {};
+    body.loads.contact_stiffness.setZero();
+    body.loads.contact_damping.setZero();
+    body.loads.contact_drift.setZero();
+    if (body.contacts == 0) continue;
+    body.link_body = {body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), 0};
+    const bool moves = body.can_move && (parameters.all_bodies_are_dynamic || body.held_by != kNone);
+    if (moves) body.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
+  }
+  for (const Link& link : links) {
+    if (!link.contact || link.contact->contacts().size == 0) continue;
+    ++bodies[link.first].links_touching;
+    ++bodies[link.second].links_touching;
+  }
+  for (Body& body : bodies) {
+    const double left = 4 - (body.loads.coupling != nullptr ? body.coupling.share : 0);
+    if (body.links_touching > 0) body.link_body.budget = left / body.links_touching;
+  }
+  const bool implicit = parameters.integrator == Integrator::implicit;
+  const PenaltyParameters penalty{parameters.contact_stiffness, parameters.contact_damping_ratio, !implicit};
+  for (Link& link : links) {
+    if (!link.contact || link.contact->contacts().size == 0) continue;
+    const LinkBody& first = bodies[link.first].link_body;
+    const LinkBody& second = bodies[link.second].link_body;
+    link.contact->respond(first, second, penalty, dt);
+    link.contact->sum_up(first, second, implicit);
+    const auto add = [](Loads& loads, const LinkSide& side) {
+      loads.contact += side.wrench;
+      loads.contact_stiffness += side.stiffness;
+      loads.contact_damping += side.damping;
+      loads.contact_drift += side.drift;
+    };
+    add(bodies[link.first].loads, link.contact->on_first());
+    add(bodies[link.second].loads, link.contact->on_second());
+    totals.penetration_max = std::max(totals.penetration_max, link.contact->depth_max());
+  }
+}
+
+void Simulation::Implementation::integrate() {
+  for (Body& body : bodies) {
+    body.contact_wrench = body.loads.contact;
+    if (!body.can_move) continue;
+    if (!parameters.all_bodies_are_dynamic && body.held_by == kNone) continue;  // what nobody holds does not move
+    const StepWork work = parameters.integrator == Integrator::implicit
+                              ? step_implicit(body.rigid, body.loads, dt)
+                              : step_semi_implicit(body.rigid, body.loads, dt);
+    if (!body.rigid.is_finite())
+      fail(ErrorKind::diverged,
+           "frame {}: the state of '{}' is not finite any more; lower the stiffness or the time step", frame,
+           body.name);
+    body.contact_wrench = work.contact;
+    if (body.held_by != kNone) held[body.held_by].on_hand = -work.coupling;
+    ledger.add(work);
+  }
+}
+
+/// What the hand feels is the reaction to the coupling, taken about the virtual handle.
+void Simulation::Implementation::render() {
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    Held& hand = held[d];
+    const Pose& handle = devices[d]->reading().handle;
+    if (hand.body == kNone) {
+      hand.on_hand = {};
+    } else {
+      const Vector3d arm = bodies[hand.body].loads.target.p_WC - handle.position;
+      hand.on_hand.torque += arm.cross(hand.on_hand.force);
+    }
+    devices[d]->render(hand.on_hand, dt);
+    hand.handle_before = handle;
+  }
+}
+
+void Simulation::Implementation::take_stock() {
+  for (const Body& body : bodies) totals.force_max = std::max(totals.force_max, body.contact_wrench.force.norm());
+  energy = energy_now();
+  fill_row();
+}
+
+}  // namespace verisim

@@ -1,0 +1,108 @@
+// The inside of a Simulation: bodies, links, devices as the loop works on them. Everything is sized when it is made.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/contact/broad_phase.hpp"
+#include "engine/contact/collision_link.hpp"
+#include "engine/dynamics/body.hpp"
+#include "engine/dynamics/coupling.hpp"
+#include "engine/dynamics/integrator.hpp"
+#include "engine/dynamics/ledger.hpp"
+#include "engine/simulation/clocks.hpp"
+#include "engine/simulation/simulation.hpp"
+#include "engine/voxel/voxmap.hpp"
+
+namespace verisim {
+
+inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+struct Body {
+  std::string name;
+  RigidBody rigid;
+  bool can_move = false;  ///< not fixed, and dynamic or something that a device may hold
+  bool selectable = false;
+  Bounds bounds_B;                          ///< of its meshes, body coordinates
+  std::shared_ptr<const VoxelBody> voxels;  ///< null: nothing that moves can come near it
+  std::size_t held_by = kNone;              ///< device
+  Coupling coupling;
+
+  // of the frame that is being computed
+  LinkBody link_body;
+  Loads loads;
+  std::uint64_t contacts = 0;
+  unsigned links_touching = 0;  ///< of the last frame: shares the stability budget
+  Wrench contact_wrench;        ///< as applied
+};
+
+struct Link {
+  std::size_t first, second;               ///< bodies, first < second
+  std::unique_ptr<CollisionLink> contact;  ///< null: one of them has no voxels
+  bool near = false;                       ///< queried in this frame
+  std::uint32_t cache_hits = 0, cache_misses = 0;
+};
+
+struct Held {
+  std::size_t body = kNone;
+  Pose X_HB;               ///< body in handle coordinates, as grasped
+  bool by_script = false;  ///< grasp(): held whatever the button says
+  Wrench on_hand;          ///< what the hand felt last, about the virtual handle
+  Pose handle_before;      ///< one frame ago
+  bool sampled = false;    ///< handle_before is valid
+};
+
+struct Simulation::Implementation {
+  SimulationParameters parameters;
+  double dt;
+  unsigned threads = 1;
+  std::vector<Body> bodies;
+  std::vector<Link> links;                ///< ascending (first, second)
+  std::vector<std::size_t> link_of_pair;  ///< (first * bodies + second) -> link or kNone
+  std::unique_ptr<BroadPhase> broad_phase;
+  std::vector<std::shared_ptr<Device>> devices;
+  std::vector<Held> held;  ///< per device
+  double grasp_distance = 0.1;
+  Ledger ledger;
+  EnergyState energy;
+  Clocks clocks;
+  std::uint64_t frame = 0, collision_frames = 0, frames_planned = 0;
+  FrameCost cost;
+  Totals totals;
+  std::vector<Event> events;
+  Schema schema;  ///< /state and /cost
+  std::vector<std::byte> row;
+  std::uint64_t hash = 0;
+
+  Implementation(Scene scene, const SimulationOptions& options);
+
+  // world.cpp: how a scene becomes this
+  void place_bodies(const Scene& scene);
+  void voxelize_bodies(const Scene& scene);
+  void make_links();
+  [[nodiscard]] double reach_of(std::size_t body) const;
+
+  // step.cpp: the stages of one frame, in their order
+  void sample_devices(double t);
+  void pull();
+  void query_contacts();
+  void respond();
+  void integrate();
+  void render();
+  void take_stock();
+
+  // grasping.cpp
+  void update_grasps();
+  void take(std::size_t device, std::size_t body, bool by_script);
+  void let_go(std::size_t device);
+  [[nodiscard]] std::size_t nearest_body(const Vector3d& p_W) const;
+  [[nodiscard]] CouplingTarget target_of(std::size_t device) const;
+  [[nodiscard]] EnergyState energy_now() const;
+
+  // columns.cpp: what a row holds
+  void make_schema();
+  void fill_row();
+};
+
+}  // namespace verisim
