@@ -1,8 +1,8 @@
 // The voxel representation of one body: a sparse map of signed distance layers, and the pointshell that belongs to it.
 //
 // Source: dissertation chapters 6 and 8 (surface voxels, 12-bit private data per voxel; here 16); Voxmap PointShell of
-// McNeely et al. 1999. Coordinates: grid coordinates G are body coordinates shifted by `origin` and divided by the voxel
-// size, so cell (i,j,k) is the closed box [i,i+1] x [j,j+1] x [k,k+1].
+// McNeely et al. 1999. Coordinates: grid coordinates G are body coordinates shifted by `origin` and divided by the
+// voxel size, so cell (i,j,k) is the closed box [i,i+1] x [j,j+1] x [k,k+1].
 //
 // Storage is in bricks of 8 x 8 x 8 voxels. A brick without a surface voxel within the band holds one value everywhere
 // and is shared (block kOutsideBlock or kInsideBlock); so memory follows surface area. Look-up is two dependent loads:
@@ -21,7 +21,8 @@ namespace verisim {
 
 inline constexpr int kBrickShift = 3;
 inline constexpr int kBrickSide = 1 << kBrickShift;
-inline constexpr int kBrickCells = kBrickSide * kBrickSide * kBrickSide;  // 512: also the cluster size limit of the pointshell
+inline constexpr int kBrickCells =
+    kBrickSide * kBrickSide * kBrickSide;  // 512: also the cluster size limit of the pointshell
 inline constexpr std::uint32_t kOutsideBlock = 0;
 inline constexpr std::uint32_t kInsideBlock = 1;
 inline constexpr int kBand = 6;  ///< layers are exact (Chebyshev voxel steps from the nearest surface voxel) up to here
@@ -33,16 +34,17 @@ using Layer = std::int8_t;
 /// Small identity of a set of b-rep entities (hash-consed, see features.hpp). 0: the empty set.
 using FeatureSetId = std::uint16_t;
 
-struct Voxmap {                                  //  shape        unit  meaning
-  Vector3d origin = Vector3d::Zero();            //               m     corner of cell (0,0,0) in body coordinates
-  double voxel_size = 0;                         //               m
-  Eigen::Vector3i bricks = {0, 0, 0};            //               -     number of bricks along x, y, z
-  std::vector<std::uint32_t> brick_block;        //  (bz,by,bx)   -     block of each brick, x fastest
-  std::vector<Layer> brick_clearance;            //  (bz,by,bx)   -     bricks (Chebyshev steps) to the nearest brick with
-                                                 //                     a surface voxel; + outside, - inside, 0 = has one; clamped to ±127
-  std::vector<Layer> layers;                     //  (blocks,512) -     cell = x + 8 y + 64 z within the brick
+struct Voxmap {                            //  shape        unit  meaning
+  Vector3d origin = Vector3d::Zero();      //               m     corner of cell (0,0,0) in body coordinates
+  double voxel_size = 0;                   //               m
+  Eigen::Vector3i bricks = {0, 0, 0};      //               -     number of bricks along x, y, z
+  std::vector<std::uint32_t> brick_block;  //  (bz,by,bx)   -     block of each brick, x fastest
+  std::vector<Layer>
+      brick_clearance;        //  (bz,by,bx)   -     bricks (Chebyshev steps) to the nearest brick with
+                              //                     a surface voxel; + outside, - inside, 0 = has one; clamped to ±127
+  std::vector<Layer> layers;  //  (blocks,512) -     cell = x + 8 y + 64 z within the brick
   std::vector<std::array<std::uint64_t, 8>> surface_mask;  // (blocks) - bit x + 8 y of word z: is a surface voxel
-  std::vector<std::uint32_t> first_surface;      //  (blocks)     -     number of the block's first surface voxel
+  std::vector<std::uint32_t> first_surface;  //  (blocks)     -     number of the block's first surface voxel
   std::uint32_t surface_count = 0;
 
   /// Layer of the voxel that contains the body-coordinate point; outside the grid: +(kBand + 1). For tests and tools.
@@ -58,20 +60,24 @@ struct Voxmap {                                  //  shape        unit  meaning
   [[nodiscard]] std::size_t memory_bytes() const;
 };
 
-/// One point per surface voxel: the voxel's centre with an inward normal. Sorted by brick (z, y, x), then by cell within
-/// it, so that point i is surface voxel i of the same body's voxmap and a cluster is a run of neighbours.
-struct Pointshell {                    //  shape  unit  meaning
-  std::vector<float> x, y, z;          //  (n)    m     centre of the surface voxel relative to `reference`, body coordinates
-  std::vector<float> nx, ny, nz;       //  (n)    1     unit inward normal: mean of the faces in the voxel, weighted by area in it
-  std::vector<std::uint32_t> voxel;    //  (n)    -     surface voxel number of each point; empty: point i is voxel i (no thinning)
-  std::vector<FeatureSetId> features;  //  (surface_count) - b-rep entities through each SURFACE VOXEL; empty: none known
+/// One point per surface voxel: the voxel's centre with an inward normal. Sorted by brick (z, y, x), then by cell
+/// within it, so that point i is surface voxel i of the same body's voxmap and a cluster is a run of neighbours.
+struct Pointshell {            //  shape  unit  meaning
+  std::vector<float> x, y, z;  //  (n)    m     centre of the surface voxel relative to `reference`, body coordinates
+  std::vector<float> nx, ny,
+      nz;  //  (n)    1     unit inward normal: mean of the faces in the voxel, weighted by area in it
+  std::vector<std::uint32_t>
+      voxel;  //  (n)    -     surface voxel number of each point; empty: point i is voxel i (no thinning)
+  std::vector<FeatureSetId>
+      features;  //  (surface_count) - b-rep entities through each SURFACE VOXEL; empty: none known
   struct Cluster {
-    std::uint32_t begin, end;          //  -            points [begin, end), at most 512
-    Vector3f center;                   //  m            of the bounding ball, relative to `reference`
-    float radius;                      //  m            covers every point (rounded up)
+    std::uint32_t begin, end;  //  -            points [begin, end), at most 512
+    Vector3f center;           //  m            of the bounding ball, relative to `reference`
+    float radius;              //  m            covers every point (rounded up)
   };
   std::vector<Cluster> clusters;
-  Vector3d reference = Vector3d::Zero();  //  m         body coordinates; keeps floats small for parts far from their origin
+  Vector3d reference =
+      Vector3d::Zero();  //  m         body coordinates; keeps floats small for parts far from their origin
   [[nodiscard]] std::size_t size() const { return x.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
 };

@@ -1,0 +1,79 @@
+#include "engine/voxel/brick_lists.hpp"
+
+#include <cmath>
+
+#include "engine/base/error.hpp"
+
+namespace verisim {
+
+namespace {
+
+/// The bricks that one triangle touches, in no particular order, each once.
+template <class Visit>
+class Descent {
+ public:
+  Descent(const TriangleOverlap& triangle, const Eigen::Vector3i& bricks, Visit visit)
+      : triangle_(triangle), bricks_(bricks), visit_(visit) {}
+
+  void run() {
+    Eigen::Vector3i first, last;  // bricks of the bounding box
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = static_cast<int>(std::floor((triangle_.lower()[axis] - kCandidateMargin) / kBrickSide));
+      last[axis] = static_cast<int>(std::floor((triangle_.upper()[axis] + kCandidateMargin) / kBrickSide));
+    }
+    if (first == last) return visit_(brick_index(first.x(), first.y(), first.z(), bricks_));
+    int shift = 0;  // cubes of 2^shift bricks, so large that eight along each axis hold the bounding box
+    while (((last.array() / (1 << shift)) - (first.array() / (1 << shift))).maxCoeff() >= kBrickSide) {
+      shift += kBrickShift;
+    }
+    descend((first.array() / (1 << shift)) * (1 << shift), shift);
+  }
+
+ private:
+  void descend(const Eigen::Vector3i& first_brick, int shift) {
+    const double side = static_cast<double>(kBrickSide) * (1 << shift);
+    const BrickMask mask = triangle_.touched(
+        {.corner = kBrickSide * first_brick.cast<double>(), .side = side, .half_side = 0.5 * side + kCandidateMargin});
+    for_each_cell(mask, [&](int x, int y, int z) {
+      const Eigen::Vector3i brick = first_brick + (1 << shift) * Eigen::Vector3i(x, y, z);
+      if (shift > 0) return descend(brick, shift - kBrickShift);
+      if ((brick.array() < bricks_.array()).all()) visit_(brick_index(brick.x(), brick.y(), brick.z(), bricks_));
+    });
+  }
+
+  const TriangleOverlap& triangle_;
+  const Eigen::Vector3i& bricks_;
+  Visit visit_;
+};
+
+/// Visits every (brick, triangle), the last triangle first.
+template <class Visit>
+void for_each_entry(const GridMesh& mesh, const Eigen::Vector3i& bricks, Visit visit) {
+  for (auto t = static_cast<std::uint32_t>(mesh.triangles->size()); t-- > 0;) {
+    const auto [a, b, c] = mesh.corners(t);
+    const TriangleOverlap overlap(a, b, c);
+    Descent(overlap, bricks, [&](std::size_t brick) { visit(brick, t); }).run();
+  }
+}
+
+}  // namespace
+
+// Walks twice, first to count, so that the lists have their exact size and need no sorting.
+BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks) {
+  BrickLists lists;
+  const auto count = static_cast<std::size_t>(bricks.cast<std::int64_t>().prod());
+  lists.begin.assign(count + 1, 0);
+  for_each_entry(mesh, bricks, [&](std::size_t brick, std::uint32_t) { ++lists.begin[brick]; });
+  std::uint64_t entries = 0;
+  for (std::uint32_t& begin : lists.begin) {
+    entries += begin;
+    begin =
+        static_cast<std::uint32_t>(entries);  // the brick's end; the second walk fills downwards and leaves the begin
+  }
+  VERISIM_ASSERT(entries <= std::numeric_limits<std::uint32_t>::max());
+  lists.triangle.resize(entries);
+  for_each_entry(mesh, bricks, [&](std::size_t brick, std::uint32_t t) { lists.triangle[--lists.begin[brick]] = t; });
+  return lists;
+}
+
+}  // namespace verisim

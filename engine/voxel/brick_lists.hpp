@@ -1,0 +1,49 @@
+// Which triangles pass through which brick. The only place where cost depends on the size of triangles: each is
+// followed down a hierarchy of cubes of 8^k voxels, so that work goes where its surface is and nowhere else.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/mesh.hpp"
+#include "engine/voxel/overlap.hpp"
+
+namespace verisim {
+
+/// A mesh in grid coordinates.
+struct GridMesh {
+  std::vector<Vector3d> vertices;                              // (n) voxel
+  const std::vector<std::array<std::uint32_t, 3>>* triangles;  // (m) -      of the caller's mesh
+  [[nodiscard]] std::array<Vector3d, 3> corners(std::uint32_t triangle) const {
+    const auto& [a, b, c] = (*triangles)[triangle];
+    return {vertices[a], vertices[b], vertices[c]};
+  }
+};
+
+/// For every brick the triangles, ascending, that touch it (grown by kCandidateMargin; a few more may be listed).
+struct BrickLists {
+  std::vector<std::uint32_t> begin;     // (bricks + 1)  -  the brick's first entry in `triangle`
+  std::vector<std::uint32_t> triangle;  // (entries)     -
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t brick) const {
+    return {triangle.data() + begin[brick], begin[brick + 1] - begin[brick]};
+  }
+  [[nodiscard]] bool empty(std::size_t brick) const { return begin[brick] == begin[brick + 1]; }
+};
+
+/// @pre every vertex lies within the grid of `bricks` bricks
+[[nodiscard]] BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks);
+
+/// Lower corner of a brick [voxel].
+[[nodiscard]] inline Eigen::Vector3i brick_corner(std::size_t brick, const Eigen::Vector3i& bricks) {
+  const auto nx = static_cast<std::size_t>(bricks.x()), ny = static_cast<std::size_t>(bricks.y());
+  return kBrickSide * Eigen::Vector3i(static_cast<int>(brick % nx), static_cast<int>(brick / nx % ny),
+                                      static_cast<int>(brick / nx / ny));
+}
+
+[[nodiscard]] inline std::size_t brick_index(int x, int y, int z, const Eigen::Vector3i& bricks) {
+  const auto size = [](int i) { return static_cast<std::size_t>(i); };
+  return (size(z) * size(bricks.y()) + size(y)) * size(bricks.x()) + size(x);
+}
+
+}  // namespace verisim
