@@ -2,6 +2,7 @@
 // target.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,6 +29,10 @@ struct FrameCost {
   std::uint64_t lookups = 0;  ///< pairs of feature sets looked up
   std::uint64_t recognitions = 0;
 };
+
+/// The stages of a frame, as /timing/stage_ns counts them.
+inline constexpr std::array<const char*, 8> kStageNames = {"sources", "coupling", "query",  "response",
+                                                           "motion",  "render",   "clocks", "record"};
 
 class Simulation {
  public:
@@ -64,9 +69,10 @@ class Simulation {
   /// order of adding: script frames, trackers, firmware. `f` gets the simulated time.
   void add_clock(double rate_hz, std::function<void(double)> f);
 
-  /// An event for /events; kept until drain_events.
+  /// An event for /events; kept until clear_events.
   void add_event(const std::string& kind, const std::string& text);
-  [[nodiscard]] std::vector<Event> drain_events();
+  [[nodiscard]] const std::vector<Event>& events() const;
+  void clear_events();
 
   /// The columns of /state and /cost of this scene, and the last frame's values written into a row of that schema.
   void describe(Schema& schema) const;

@@ -1,5 +1,6 @@
 // The order of one frame. To change it is to change every golden hash.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "engine/base/error.hpp"
@@ -7,20 +8,50 @@
 
 namespace verisim {
 
+namespace {
+
+/// Times the stages of a frame. The one place where the loop reads a clock; nothing reads what it wrote.
+class StageTimer {
+ public:
+  explicit StageTimer(std::array<std::uint32_t, kStageNames.size()>& stage_ns) : out_(stage_ns), last_(now()) {}
+  void done(std::size_t stage) {
+    const auto t = now();
+    out_[stage] = static_cast<std::uint32_t>(t - last_);
+    last_ = t;
+  }
+
+ private:
+  static std::int64_t now() {
+    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  }
+  std::array<std::uint32_t, kStageNames.size()>& out_;
+  std::int64_t last_;
+};
+
+}  // namespace
+
 void Simulation::step() {
   Implementation& w = *implementation_;
+  StageTimer timer(w.stage_ns);
   const double t = static_cast<double>(w.frame) * w.dt;  // never t += dt: its roundings pile up
   w.sample_devices(t);                                   // raw pose -> virtual handle
   w.update_grasps();
-  w.pull();            // virtual coupling
+  timer.done(0);
+  w.pull();  // virtual coupling
+  timer.done(1);
   w.query_contacts();  // broad phase, then pointshell against voxmap
-  w.respond();         // penalty force of every contact, summed in pair order
+  timer.done(2);
+  w.respond();  // penalty force of every contact, summed in pair order
+  timer.done(3);
   w.integrate();
+  timer.done(4);
   w.render();  // coupling wrench -> what the hardware is told to render
+  timer.done(5);
   ++w.frame;
-  w.clocks.run_due(w.frame,
-                   static_cast<double>(w.frame) * w.dt);  // script, trackers, firmware: same thread, fixed order
-  w.take_stock();                                         // energies, totals, the row and its hash
+  w.clocks.run_due(w.frame, static_cast<double>(w.frame) * w.dt);  // script, trackers, firmware: same thread, fixed order
+  timer.done(6);
+  w.take_stock();  // energies, totals, the row and its hash
+  timer.done(7);
 }
 
 void Simulation::Implementation::sample_devices(double t) {

@@ -71,6 +71,7 @@ struct Simulation::Implementation {
   FrameCost cost;
   Totals totals;
   std::vector<Event> events;
+  std::array<std::uint32_t, kStageNames.size()> stage_ns{};
   Schema schema;  ///< /state and /cost
   std::vector<std::byte> row;
   std::uint64_t hash = 0;

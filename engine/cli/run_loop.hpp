@@ -1,0 +1,44 @@
+// The loop around a simulation: steps, times, records, paces, stops.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "engine/record/run_file.hpp"
+#include "engine/simulation/simulation.hpp"
+
+namespace verisim::cli {
+
+struct LoopOptions {
+  std::uint64_t frames = 0;
+  bool paced = false;                        ///< wait for the wall clock before each frame
+  std::function<bool()> finished;            ///< asked after every frame: the scenario may end early
+  std::function<void(std::uint64_t)> progress;  ///< told frames done, about five times a second; may be empty
+};
+
+enum class LoopEnd { done, interrupted, diverged, io_failed };
+
+struct LoopResult {
+  LoopEnd end = LoopEnd::done;
+  std::string error;                             ///< for diverged and io_failed
+  std::uint64_t overruns = 0;
+  std::vector<std::uint32_t> frame_ns;           ///< of every frame
+  std::vector<std::uint32_t> collision_frame_ns; ///< of the frames with contact
+  double wall_s = 0;                             ///< first frame to the last row handed over
+};
+
+/// Adds the /timing columns behind the simulation's own.
+void add_timing_columns(Schema& schema);
+
+/// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may be
+/// null. `schema` is the simulation's, then the timing columns. The loop itself allocates nothing.
+[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema, const LoopOptions& options);
+
+/// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
+void catch_interrupts();
+
+/// The p-quantile (0 to 1) of some times, nearest rank; 0 of none. `times` is reordered.
+[[nodiscard]] std::uint32_t quantile(std::vector<std::uint32_t>& times, double p);
+
+}  // namespace verisim::cli

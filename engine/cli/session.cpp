@@ -1,0 +1,101 @@
+#include "engine/cli/session.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.hpp"
+#include "engine/base/hash.hpp"
+
+namespace verisim::cli {
+
+using nlohmann::json;
+
+Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet) {
+  const auto start = std::chrono::steady_clock::now();
+  Session session;
+  session.options = options;
+  session.inputs = std::move(inputs);
+  session.scenario = std::make_unique<Scenario>(options, *session.inputs);
+  Scene scene = session.scenario->take_scene();
+  session.seed = scene.parameters.seed;
+  std::vector<std::string> notices = session.scenario->notices();
+  for (const BodyDescription& body : scene.bodies)
+    for (const Part& part : body.parts)
+      for (const std::string& question : questions_about(part)) notices.push_back("'" + body.name + "': " + question);
+  for (const auto& device : scene.devices)
+    if (!device->driven())
+      notices.push_back("device '" + device->name() + "' is driven by nothing and stays at its home pose; --bind drives it");
+  session.simulation = std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads});
+  for (const std::string& notice : notices) {
+    if (!quiet) std::fprintf(stderr, "warning: %s\n", notice.c_str());
+    session.simulation->add_event("warning", notice);
+  }
+  session.scenario->attach(*session.simulation);
+  session.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return session;
+}
+
+std::vector<std::string> named_paths(const ScenarioOptions& options) {
+  std::vector<std::string> paths;
+  const auto add_if_there = [&](const std::string& value) {
+    std::error_code error;
+    if (std::filesystem::exists(value, error)) paths.push_back(value);
+  };
+  for (const auto& [key, value] : options.sets) add_if_there(value);
+  for (const auto& [name, source] : options.binds) add_if_there(source);
+  return paths;
+}
+
+std::string invocation_json(const ScenarioOptions& options) {
+  json j;
+  j["path"] = options.path;
+  j["set"] = options.sets;
+  j["bind"] = options.binds;
+  if (options.seed) j["seed"] = *options.seed;
+  if (options.duration) j["duration"] = *options.duration;
+  return j.dump();
+}
+
+ScenarioOptions options_from_header(const RunHeader& header) {
+  const auto found = header.attributes.find("invocation");
+  if (found == header.attributes.end() || !std::holds_alternative<std::string>(found->second))
+    fail(ErrorKind::input, "the run file does not say how it was made (attribute 'invocation'); it cannot be replayed");
+  try {
+    const json j = json::parse(std::get<std::string>(found->second));
+    ScenarioOptions options;
+    options.path = j.at("path");
+    options.sets = j.at("set");
+    options.binds = j.at("bind");
+    if (j.contains("seed")) options.seed = j["seed"].get<std::uint64_t>();
+    if (j.contains("duration")) options.duration = j["duration"].get<double>();
+    return options;
+  } catch (const json::exception&) {
+    fail(ErrorKind::input, "the run file's attribute 'invocation' is damaged; it cannot be replayed");
+  }
+}
+
+RunHeader header_of(const Session& session, bool embed) {
+  RunHeader header;
+  const std::string& path = session.options.path;
+  header.attributes["format"] = "verisim-run";
+  header.attributes["format_version"] = std::int64_t{1};
+  header.attributes["version"] = VERISIM_VERSION;
+  header.attributes["scenario"] = std::filesystem::path(path).filename().string();
+  header.attributes["parameters"] = session.scenario->parameters_json();
+  header.attributes["seed"] = static_cast<std::int64_t>(session.seed);
+  header.attributes["dt"] = session.simulation->dt();
+  header.attributes["invocation"] = invocation_json(session.options);
+  header.files = session.inputs->files();
+  header.models = session.inputs->models();
+  if (!header.files.empty()) header.attributes["scenario_sha256"] = header.files.front().sha256;
+  if (!embed)
+    for (InputFile& file : header.files) {
+      file.embedded = false;
+      file.content.clear();
+    }
+  return header;
+}
+
+}  // namespace verisim::cli

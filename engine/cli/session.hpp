@@ -1,0 +1,35 @@
+// From a scenario to a simulation that is ready to step, and to the header of its run file. Used by run and replay.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/cli/options.hpp"
+#include "engine/script/scenario.hpp"
+
+namespace verisim::cli {
+
+/// One scenario in one simulation.
+struct Session {
+  std::unique_ptr<Inputs> inputs;
+  std::unique_ptr<Scenario> scenario;
+  std::unique_ptr<Simulation> simulation;
+  ScenarioOptions options;
+  std::uint64_t seed = 0;
+  double load_s = 0;
+};
+
+/// Reads scenario and models, builds the simulation. Notices go to stderr (unless quiet) and to the events.
+[[nodiscard]] Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet);
+
+/// The files and folders that the command line names, which a scenario may read wherever they lie.
+[[nodiscard]] std::vector<std::string> named_paths(const ScenarioOptions& options);
+
+/// What the run file says before the first frame, with everything that a replay needs.
+[[nodiscard]] RunHeader header_of(const Session& session, bool embed);
+
+/// The invocation as replay needs it (sets, binds, seed, duration), as JSON, and back.
+[[nodiscard]] std::string invocation_json(const ScenarioOptions& options);
+[[nodiscard]] ScenarioOptions options_from_header(const RunHeader& header);
+
+}  // namespace verisim::cli
