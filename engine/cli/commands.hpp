@@ -1,5 +1,5 @@
-// The commands of verisim. Each add_… declares a command and its options on `app`; its work runs as CLI11's callback and
-// sets the process's exit code.
+// The commands of verisim. Each add_… declares a command and its options on `app`; its work runs as CLI11's callback
+// and sets the process's exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -12,7 +12,8 @@ int run_command(int argc, char** argv) {
   CLI::App app{"verisim: haptic virtual assembly, simulated one millisecond at a time, without a window"};
   app.set_version_flag("--version", VERISIM_VERSION);
   app.require_subcommand(1);
-  app.footer("Example: verisim run scenarios/peg_in_hole.lua --set clearance=mm(2)\nverisim COMMAND --help explains each.");
+  app.footer(
+      "Example: verisim run scenarios/peg_in_hole.lua --set clearance=mm(2)\nverisim COMMAND --help explains each.");
   int exit_code = 0;
   verisim::cli::add_run(app, exit_code);
   verisim::cli::add_replay(app, exit_code);

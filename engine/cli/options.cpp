@@ -6,7 +6,8 @@ namespace verisim::cli {
 
 void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_option("-o,--out", o.out, "Run file to write (default: runs/SCENARIO.h5)");
-  command.add_option("--set", o.sets, "KEY=VALUE: scenario parameter, a Lua expression; a bare word is a string")->take_all();
+  command.add_option("--set", o.sets, "KEY=VALUE: scenario parameter, a Lua expression; a bare word is a string")
+      ->take_all();
   command.add_option("--bind", o.binds, "NAME=SOURCE: drive the device NAME from a trace file")->take_all();
   command.add_option("--duration", o.duration, "Simulated seconds")->check(CLI::PositiveNumber);
   command.add_option("--seed", o.seed, "Seed of every random stream");
@@ -18,7 +19,8 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_flag("--no-embed", o.no_embed, "Leave the content of input files out of the run file");
 }
 
-std::vector<std::pair<std::string, std::string>> split_pairs(const std::string& option, const std::vector<std::string>& texts) {
+std::vector<std::pair<std::string, std::string>> split_pairs(const std::string& option,
+                                                             const std::vector<std::string>& texts) {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');

@@ -13,8 +13,10 @@ void add_recover(CLI::App& app, int& exit_code) {
   command->footer("Example: verisim recover runs/peg_in_hole.h5");
   command->callback([=, &exit_code] {
     const std::optional<std::size_t> rows = recover(*path);
-    if (rows) std::printf("%s: closed, %zu frames kept\n", path->c_str(), *rows);
-    else std::printf("%s: is closed already, nothing to do\n", path->c_str());
+    if (rows)
+      std::printf("%s: closed, %zu frames kept\n", path->c_str(), *rows);
+    else
+      std::printf("%s: is closed already, nothing to do\n", path->c_str());
     exit_code = 0;
   });
 }

@@ -22,7 +22,8 @@ class StoredRows {
       const Column* stored = nullptr;
       for (const Column& candidate : file.schema().columns())
         if (candidate.path == column.path) stored = &candidate;
-      if (stored == nullptr) fail(ErrorKind::check_failed, "{}: is in the simulation and not in the run file", column.path);
+      if (stored == nullptr)
+        fail(ErrorKind::check_failed, "{}: is in the simulation and not in the run file", column.path);
       if (stored->dtype != column.dtype || stored->width != column.width)
         fail(ErrorKind::check_failed, "{}: has another shape in the run file", column.path);
       columns_.push_back({column, file.column(*stored)});
@@ -52,13 +53,14 @@ class StoredRows {
     for (std::size_t i = size; i-- > 0;) text += fmt::format("{:02x}", static_cast<unsigned>(bytes[i]));
     return text;
   }
-  static std::string describe(std::size_t frame, const Column& column, const std::byte* stored, const std::byte* simulated) {
+  static std::string describe(std::size_t frame, const Column& column, const std::byte* stored,
+                              const std::byte* simulated) {
     const std::size_t size = size_of(column.dtype);
     std::size_t i = 0;
     while (std::memcmp(stored + i * size, simulated + i * size, size) == 0) ++i;
     const std::string index = column.width > 1 ? fmt::format("[{}]", i) : "";
-    return fmt::format("frame {}, {}{}: stored {}, simulated {}", frame, column.path, index, hex(stored + i * size, size),
-                       hex(simulated + i * size, size));
+    return fmt::format("frame {}, {}{}: stored {}, simulated {}", frame, column.path, index,
+                       hex(stored + i * size, size), hex(simulated + i * size, size));
   }
 
   std::size_t rows_;
@@ -68,19 +70,20 @@ class StoredRows {
 void check_contents(const RunFile& file) {
   for (const InputFile& input : file.header().files) {
     if (!input.embedded)
-      fail(ErrorKind::input, "{} was recorded with --no-embed: its content is not in the run file, so it cannot be replayed",
-           input.name);
+      fail(ErrorKind::input,
+           "{} was recorded with --no-embed: its content is not in the run file, so it cannot be replayed", input.name);
     if (sha256(input.content) != input.sha256)
-      fail(ErrorKind::check_failed, "/inputs/files/{}: its content is not what its sha256 says; the run file is damaged",
-           input.name);
+      fail(ErrorKind::check_failed,
+           "/inputs/files/{}: its content is not what its sha256 says; the run file is damaged", input.name);
   }
 }
 
 std::string stored_hash(const RunFile& file) {
   const auto& attributes = file.header().attributes;
   const auto found = attributes.find("state_hash");
-  return found != attributes.end() && std::holds_alternative<std::string>(found->second) ? std::get<std::string>(found->second)
-                                                                                        : "";
+  return found != attributes.end() && std::holds_alternative<std::string>(found->second)
+             ? std::get<std::string>(found->second)
+             : "";
 }
 
 /// The events of a run, one after the other, as recorded.
@@ -99,7 +102,8 @@ std::string first_different_event(const std::vector<Event>& stored, const std::v
 int replay(const std::string& path, bool verify, const SimulateOptions& o) {
   use_simd_target(o.simd);
   const RunFile file(path);
-  if (file.recovered()) std::fprintf(stderr, "notice: %s was left open by a killed run and has been closed\n", path.c_str());
+  if (file.recovered())
+    std::fprintf(stderr, "notice: %s was left open by a killed run and has been closed\n", path.c_str());
   check_contents(file);
   const ScenarioOptions options = options_from_header(file.header());
   auto inputs = std::make_unique<Inputs>(Inputs::stored(file.header().files, file.header().models));
@@ -129,8 +133,8 @@ int replay(const std::string& path, bool verify, const SimulateOptions& o) {
       fail(ErrorKind::check_failed, "{}: state_hash says {}, simulated {}", path, stored_hash(file), hash);
   }
   if (o.json)
-    std::printf("{\"run_file\":\"%s\",\"frames\":%zu,\"state_hash\":\"%s\",\"verified\":%s}\n", path.c_str(), file.rows(),
-                hash.c_str(), verify ? "true" : "false");
+    std::printf("{\"run_file\":\"%s\",\"frames\":%zu,\"state_hash\":\"%s\",\"verified\":%s}\n", path.c_str(),
+                file.rows(), hash.c_str(), verify ? "true" : "false");
   else if (!o.quiet)
     std::printf("%s: %zu frames simulated again, state hash %s%s\n", path.c_str(), file.rows(), hash.c_str(),
                 verify ? ", every value of /state, /cost and /events equal" : "");

@@ -42,10 +42,14 @@ std::function<void(std::uint64_t)> progress_bar(std::uint64_t frames, bool quiet
 
 int exit_code_of(LoopEnd end) {
   switch (end) {
-    case LoopEnd::done: return 0;
-    case LoopEnd::interrupted: return static_cast<int>(ErrorKind::interrupted);
-    case LoopEnd::diverged: return static_cast<int>(ErrorKind::diverged);
-    case LoopEnd::io_failed: return static_cast<int>(ErrorKind::io);
+    case LoopEnd::done:
+      return 0;
+    case LoopEnd::interrupted:
+      return static_cast<int>(ErrorKind::interrupted);
+    case LoopEnd::diverged:
+      return static_cast<int>(ErrorKind::diverged);
+    case LoopEnd::io_failed:
+      return static_cast<int>(ErrorKind::io);
   }
   return 0;
 }
@@ -58,8 +62,7 @@ int run(const std::string& scenario, const SimulateOptions& o) {
   options.binds = split_pairs("--bind", o.binds);
   options.seed = o.seed;
   options.duration = o.duration;
-  auto inputs =
-      std::make_unique<Inputs>(Inputs::live(fs::path(scenario).parent_path().string(), named_paths(options)));
+  auto inputs = std::make_unique<Inputs>(Inputs::live(fs::path(scenario).parent_path().string(), named_paths(options)));
   Session session = open_session(options, std::move(inputs), o.threads, o.quiet);
   Simulation& simulation = *session.simulation;
 
@@ -84,8 +87,10 @@ int run(const std::string& scenario, const SimulateOptions& o) {
   const Summary summary = summarize(session, result, file);
   if (result.end != LoopEnd::io_failed) recorder.close(to_attributes(summary), {{"state_hash", summary.state_hash}});
   if (!result.error.empty()) std::fprintf(stderr, "error: %s\n", result.error.c_str());
-  if (o.json) std::printf("%s\n", to_json(summary).c_str());
-  else if (!o.quiet) std::printf("%s", to_table(summary).c_str());
+  if (o.json)
+    std::printf("%s\n", to_json(summary).c_str());
+  else if (!o.quiet)
+    std::printf("%s", to_table(summary).c_str());
   return exit_code_of(result.end);
 }
 

@@ -76,7 +76,8 @@ void add_timing_columns(Schema& schema) {
   schema.add({"/timing/frame_ns", Dtype::u32, 1, "ns", "wall clock of computing the frame", 0, {}});
   schema.add({"/timing/stage_ns", Dtype::u32, kStageNames.size(), "ns", "wall clock of its stages: " + stages, 0, {}});
   schema.add({"/timing/period_ns", Dtype::u32, 1, "ns", "start of the frame before to the start of this one", 0, {}});
-  schema.add({"/timing/overrun", Dtype::u8, 1, "1", "1: period over 1.5 dt (free-running: compute time over 1.5 dt)", 0, {}});
+  schema.add(
+      {"/timing/overrun", Dtype::u8, 1, "1", "1: period over 1.5 dt (free-running: compute time over 1.5 dt)", 0, {}});
 }
 
 LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema, const LoopOptions& options) {

@@ -12,8 +12,8 @@ namespace verisim::cli {
 
 struct LoopOptions {
   std::uint64_t frames = 0;
-  bool paced = false;                        ///< wait for the wall clock before each frame
-  std::function<bool()> finished;            ///< asked after every frame: the scenario may end early
+  bool paced = false;                           ///< wait for the wall clock before each frame
+  std::function<bool()> finished;               ///< asked after every frame: the scenario may end early
   std::function<void(std::uint64_t)> progress;  ///< told frames done, about five times a second; may be empty
 };
 
@@ -21,19 +21,20 @@ enum class LoopEnd { done, interrupted, diverged, io_failed };
 
 struct LoopResult {
   LoopEnd end = LoopEnd::done;
-  std::string error;                             ///< for diverged and io_failed
+  std::string error;  ///< for diverged and io_failed
   std::uint64_t overruns = 0;
-  std::vector<std::uint32_t> frame_ns;           ///< of every frame
-  std::vector<std::uint32_t> collision_frame_ns; ///< of the frames with contact
-  double wall_s = 0;                             ///< first frame to the last row handed over
+  std::vector<std::uint32_t> frame_ns;            ///< of every frame
+  std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
+  double wall_s = 0;                              ///< first frame to the last row handed over
 };
 
 /// Adds the /timing columns behind the simulation's own.
 void add_timing_columns(Schema& schema);
 
-/// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may be
-/// null. `schema` is the simulation's, then the timing columns. The loop itself allocates nothing.
-[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema, const LoopOptions& options);
+/// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may
+/// be null. `schema` is the simulation's, then the timing columns. The loop itself allocates nothing.
+[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema,
+                                  const LoopOptions& options);
 
 /// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
 void catch_interrupts();

@@ -26,7 +26,8 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
       for (const std::string& question : questions_about(part)) notices.push_back("'" + body.name + "': " + question);
   for (const auto& device : scene.devices)
     if (!device->driven())
-      notices.push_back("device '" + device->name() + "' is driven by nothing and stays at its home pose; --bind drives it");
+      notices.push_back("device '" + device->name() +
+                        "' is driven by nothing and stays at its home pose; --bind drives it");
   session.simulation = std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads});
   for (const std::string& notice : notices) {
     if (!quiet) std::fprintf(stderr, "warning: %s\n", notice.c_str());

@@ -20,7 +20,8 @@ struct Session {
 };
 
 /// Reads scenario and models, builds the simulation. Notices go to stderr (unless quiet) and to the events.
-[[nodiscard]] Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet);
+[[nodiscard]] Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads,
+                                   bool quiet);
 
 /// The files and folders that the command line names, which a scenario may read wherever they lie.
 [[nodiscard]] std::vector<std::string> named_paths(const ScenarioOptions& options);

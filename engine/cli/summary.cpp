@@ -18,17 +18,25 @@ Summary::Times times_of(std::vector<std::uint32_t>& ns) {
 
 const char* name_of(LoopEnd end) {
   switch (end) {
-    case LoopEnd::done: return "done";
-    case LoopEnd::interrupted: return "interrupted";
-    case LoopEnd::diverged: return "diverged";
-    case LoopEnd::io_failed: return "output failed";
+    case LoopEnd::done:
+      return "done";
+    case LoopEnd::interrupted:
+      return "interrupted";
+    case LoopEnd::diverged:
+      return "diverged";
+    case LoopEnd::io_failed:
+      return "output failed";
   }
   return "";
 }
 
-double realtime_factor(const Summary& s) { return s.wall_s > 0 ? s.simulated_s / s.wall_s : 0; }
+double realtime_factor(const Summary& s) {
+  return s.wall_s > 0 ? s.simulated_s / s.wall_s : 0;
+}
 
-ordered_json json_of(const Summary::Times& t) { return {{"p50", t.p50}, {"p99", t.p99}, {"max", t.max}}; }
+ordered_json json_of(const Summary::Times& t) {
+  return {{"p50", t.p50}, {"p99", t.p99}, {"max", t.max}};
+}
 
 }  // namespace
 
@@ -84,7 +92,9 @@ std::string to_json(const Summary& s) {
 
 std::string to_table(const Summary& s) {
   std::string text;
-  const auto row = [&](const char* name, const std::string& value) { text += fmt::format("  {:<22}{}\n", name, value); };
+  const auto row = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<22}{}\n", name, value);
+  };
   const auto times = [](const Summary::Times& t) {
     return fmt::format("{:.1f} us median, {:.1f} us 99 %, {:.1f} us max", t.p50 / 1e3, t.p99 / 1e3, t.max / 1e3);
   };

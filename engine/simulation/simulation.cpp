@@ -91,10 +91,16 @@ void Simulation::add_event(const std::string& kind, const std::string& text) {
   implementation_->events.push_back({time(), kind, text});
 }
 
-const std::vector<Event>& Simulation::events() const { return implementation_->events; }
-void Simulation::clear_events() { implementation_->events.clear(); }
+const std::vector<Event>& Simulation::events() const {
+  return implementation_->events;
+}
+void Simulation::clear_events() {
+  implementation_->events.clear();
+}
 
-const std::array<std::uint32_t, kStageNames.size()>& Simulation::stage_ns() const { return implementation_->stage_ns; }
+const std::array<std::uint32_t, kStageNames.size()>& Simulation::stage_ns() const {
+  return implementation_->stage_ns;
+}
 
 void Simulation::describe(Schema& schema) const {
   for (const Column& column : implementation_->schema.columns()) schema.add(column);

@@ -50,7 +50,9 @@ class Simulation {
   [[nodiscard]] double dt() const;
   [[nodiscard]] std::uint64_t frames_planned() const;  ///< from duration or the longest device
   [[nodiscard]] std::uint64_t collision_frames() const;
-  [[nodiscard]] const FrameCost& cost() const;     ///< of the last frame
+  [[nodiscard]] const FrameCost& cost() const;  ///< of the last frame
+  /// Wall clock of each stage of the last frame [ns]: measured, never read by the simulation.
+  [[nodiscard]] const std::array<std::uint32_t, kStageNames.size()>& stage_ns() const;
   [[nodiscard]] std::uint64_t state_hash() const;  ///< after the last frame
 
   // Bodies, by index in Scene::bodies.

@@ -48,7 +48,8 @@ void Simulation::step() {
   w.render();  // coupling wrench -> what the hardware is told to render
   timer.done(5);
   ++w.frame;
-  w.clocks.run_due(w.frame, static_cast<double>(w.frame) * w.dt);  // script, trackers, firmware: same thread, fixed order
+  w.clocks.run_due(w.frame,
+                   static_cast<double>(w.frame) * w.dt);  // script, trackers, firmware: same thread, fixed order
   timer.done(6);
   w.take_stock();  // energies, totals, the row and its hash
   timer.done(7);

@@ -1,0 +1,189 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/geometry/loader.hpp"
+#include "engine/simulation/inputs.hpp"
+#include "engine/voxel/voxelize.hpp"
+
+namespace verisim::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct InspectOptions {
+  std::string model;
+  double voxel = 0;
+  double scale = 0;
+  double density = 1000;
+  double deflection = 0;
+  bool json = false;
+};
+
+/// What voxelizing a part yields, or why it cannot be.
+struct VoxelStatistics {
+  std::uint32_t surface_voxels = 0;
+  std::size_t memory_bytes = 0;
+  std::size_t feature_sets = 0;
+  std::string refused;
+};
+
+VoxelStatistics voxel_statistics(const Part& part, double voxel_size) {
+  VoxelStatistics v;
+  if (!part.watertight) {
+    v.refused = "not watertight";
+    return v;
+  }
+  VoxelizeOptions options;
+  options.voxel_size = voxel_size;
+  const VoxelBody body = voxelize(part.name, part.mesh, options);
+  v.surface_voxels = body.voxmap.surface_count;
+  v.memory_bytes = body.voxmap.memory_bytes() + body.shell.memory_bytes();
+  return v;
+}
+
+template <typename Kinds>
+ordered_json counts(const Kinds& names, const std::vector<std::size_t>& indices) {
+  ordered_json j;
+  for (const char* name : names) j[name] = 0;
+  for (const std::size_t i : indices) j[names[i]] = j[names[i]].template get<int>() + 1;
+  return j;
+}
+
+ordered_json json_of(const Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+ordered_json json_of(const Part& part, double density) {
+  const Bounds bounds = bounds_of(part.mesh);
+  std::vector<std::size_t> faces;
+  std::vector<std::size_t> edges;
+  for (const Face& face : part.faces) faces.push_back(face.surface.index());
+  for (const Edge& edge : part.edges) edges.push_back(edge.curve.index());
+  ordered_json j;
+  j["name"] = part.name;
+  j["color"] = part.color;
+  j["volume_m3"] = part.mass.volume;
+  j["area_m2"] = part.area;
+  j["mass_kg"] = density * part.mass.volume;
+  j["center_of_mass_m"] = json_of(part.mass.centroid);
+  j["bounds_m"] = {json_of(bounds.min), json_of(bounds.max)};
+  j["watertight"] = part.watertight;
+  j["faces"] = counts(kSurfaceNames, faces);
+  j["edges"] = counts(kCurveNames, edges);
+  j["cylinders"] = ordered_json::array();
+  for (const Face& face : part.faces)
+    if (const auto* c = std::get_if<Cylinder>(&face.surface))
+      j["cylinders"].push_back({{"axis_point", json_of(c->point)},
+                                {"axis_direction", json_of(c->direction)},
+                                {"radius_m", c->radius},
+                                {"hole", c->hole}});
+  j["triangles"] = part.mesh.triangles.size();
+  j["notes"] = part.notes;
+  return j;
+}
+
+ordered_json json_of(const Mate& mate) {
+  return {{"part_a", mate.part_a},
+          {"part_b", mate.part_b},
+          {"radius_hole_m", mate.radius_hole},
+          {"radius_pin_m", mate.radius_pin},
+          {"clearance_m", mate.clearance()}};
+}
+
+std::string listed(const ordered_json& counted) {
+  std::string text;
+  for (const auto& [name, count] : counted.items())
+    if (count.get<int>() > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.get<int>(), name);
+  return text.empty() ? "none known" : text;
+}
+
+void print_table(const ordered_json& report) {
+  for (const auto& p : report["parts"]) {
+    const auto row = [](const char* name, const std::string& value) {
+      std::printf("  %-16s%s\n", name, value.c_str());
+    };
+    std::printf("%s\n", p["name"].get<std::string>().c_str());
+    const auto mm = [&](int i) {
+      return (p["bounds_m"][1][static_cast<std::size_t>(i)].get<double>() -
+              p["bounds_m"][0][static_cast<std::size_t>(i)].get<double>()) *
+             1e3;
+    };
+    row("size", fmt::format("{:.4g} x {:.4g} x {:.4g} mm", mm(0), mm(1), mm(2)));
+    row("volume", fmt::format("{:.6g} cm^3", p["volume_m3"].get<double>() * 1e6));
+    row("area", fmt::format("{:.6g} cm^2", p["area_m2"].get<double>() * 1e4));
+    row("mass", fmt::format("{:.4g} kg", p["mass_kg"].get<double>()));
+    row("watertight", p["watertight"].get<bool>() ? "yes" : "NO");
+    row("faces", listed(p["faces"]));
+    row("edges", listed(p["edges"]));
+    row("triangles", fmt::format("{}", p["triangles"].get<std::size_t>()));
+    if (p.contains("surface_voxels"))
+      row("voxels", fmt::format("{} on the surface, {:.2f} MB", p["surface_voxels"].get<std::size_t>(),
+                                p["memory_bytes"].get<double>() / 1e6));
+    for (const auto& note : p["notes"]) row("note", note.get<std::string>());
+  }
+  if (report["mates"].empty()) return;
+  std::printf("\nPairs of cylinders that could mate\n  %-24s%-24s%12s%12s%14s\n", "hole in", "pin of", "hole mm",
+              "pin mm", "clearance mm");
+  for (const auto& m : report["mates"])
+    std::printf("  %-24s%-24s%12.4f%12.4f%14.4f\n", m["part_a"].get<std::string>().c_str(),
+                m["part_b"].get<std::string>().c_str(), m["radius_hole_m"].get<double>() * 1e3,
+                m["radius_pin_m"].get<double>() * 1e3, m["clearance_m"].get<double>() * 1e3);
+}
+
+void inspect(const InspectOptions& o) {
+  if (!std::isfinite(o.density) || o.density <= 0)
+    fail(ErrorKind::usage, "--density must be finite and above 0 kg/m^3");
+  Inputs inputs = Inputs::live(".", {o.model});
+  LoadOptions load;
+  load.scale = o.scale;
+  load.deflection = o.deflection;
+  const std::vector<Part>& parts = inputs.model(o.model, load);
+  ordered_json report;
+  report["model"] = o.model;
+  report["parts"] = ordered_json::array();
+  for (const Part& part : parts) {
+    ordered_json j = json_of(part, o.density);
+    for (const std::string& question : questions_about(part)) {
+      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), question.c_str());
+      j["notes"].push_back(question);
+    }
+    if (o.voxel != 0) {
+      const VoxelStatistics v = voxel_statistics(part, o.voxel);
+      j["surface_voxels"] = v.surface_voxels;
+      j["feature_sets"] = v.feature_sets;
+      j["memory_bytes"] = v.memory_bytes;
+      if (!v.refused.empty()) j["notes"].push_back("not voxelized: " + v.refused);
+    }
+    report["parts"].push_back(std::move(j));
+  }
+  report["mates"] = ordered_json::array();
+  for (const Mate& mate : mating_candidates(parts)) report["mates"].push_back(json_of(mate));
+  if (o.json)
+    std::printf("%s\n", report.dump().c_str());
+  else
+    print_table(report);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("inspect", "Parts, entities, mating features, voxels of a model");
+  auto o = std::make_shared<InspectOptions>();
+  command->add_option("MODEL", o->model, "STEP, BREP, STL, OBJ, PLY or glTF file")->required();
+  command->add_option("--voxel", o->voxel, "Voxel size [m]: adds surface voxels and memory");
+  command->add_option("--scale", o->scale, "Metres per unit of a mesh file (0.001: it is in millimetres)");
+  command->add_option("--density", o->density, "kg/m^3 for the mass (default 1000)");
+  command->add_option("--deflection", o->deflection, "Chord error of the tessellation [m]");
+  command->add_flag("--json", o->json, "One JSON object on stdout");
+  command->footer("Example: verisim inspect bearing.step --voxel 0.0005");
+  command->callback([=, &exit_code] {
+    inspect(*o);
+    exit_code = 0;
+  });
+}
+
+}  // namespace verisim::cli

@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/options.hpp"
+#include "engine/record/synth.hpp"
+#include "engine/record/trace.hpp"
+#include "engine/simulation/inputs.hpp"
+
+namespace verisim::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string content_of(const std::string& file) {
+  return Inputs::live(".", {file}).read(file);
+}
+
+ordered_json describe(const Trace& trace) {
+  ordered_json j;
+  const std::size_t n = trace.rows();
+  j["kind"] = trace.kind;
+  j["rate_hz"] = trace.rate_hz;
+  j["source"] = trace.source;
+  for (const auto& [key, value] : trace.extra) j[key] = value;
+  j["samples"] = n;
+  j["duration_s"] = trace.at(n - 1, 0) - trace.at(0, 0);
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  for (std::size_t i = 1; i < n; ++i) {
+    const double step = trace.at(i, 0) - trace.at(i - 1, 0);
+    shortest = std::min(shortest, step);
+    longest = std::max(longest, step);
+  }
+  if (n > 1) {
+    j["measured_rate_hz"] = static_cast<double>(n - 1) / j["duration_s"].get<double>();
+    j["shortest_step_s"] = shortest;
+    j["longest_step_s"] = longest;
+  }
+  for (std::size_t c = 1; c < trace.columns.size(); ++c) {
+    double low = trace.at(0, c);
+    double high = low;
+    for (std::size_t i = 0; i < n; ++i) {
+      low = std::min(low, trace.at(i, c));
+      high = std::max(high, trace.at(i, c));
+    }
+    j["columns"][trace.columns[c]] = {{"min", low}, {"max", high}};
+  }
+  return j;
+}
+
+void print_table(const ordered_json& j) {
+  for (const auto& [name, value] : j.items()) {
+    if (name == "columns") continue;
+    std::printf("%-20s%s\n", name.c_str(), (value.is_string() ? value.get<std::string>() : value.dump()).c_str());
+  }
+  std::printf("%-20s%14s%14s\n", "column", "min", "max");
+  for (const auto& [name, range] : j["columns"].items())
+    std::printf("%-20s%14.6g%14.6g\n", name.c_str(), range["min"].get<double>(), range["max"].get<double>());
+}
+
+void add_info(CLI::App& trace, int& exit_code) {
+  struct Options {
+    std::string file;
+    bool json = false;
+    TraceLimits limits;
+  };
+  auto* command = trace.add_subcommand("info", "Kind, rate, gaps and ranges of a trace");
+  auto o = std::make_shared<Options>();
+  command->add_option("TRACE", o->file, "Trace, CSV or HDF5")->required();
+  command->add_flag("--json", o->json, "One JSON object on stdout");
+  command->add_flag("--resort", o->limits.resort, "Sort the samples by time first");
+  command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s");
+  command->footer("Example: verisim trace info peg.csv");
+  command->callback([=, &exit_code] {
+    const ordered_json report = describe(parse_trace(o->file, content_of(o->file), "", o->limits));
+    if (o->json)
+      std::printf("%s\n", report.dump().c_str());
+    else
+      print_table(report);
+    exit_code = 0;
+  });
+}
+
+void add_convert(CLI::App& trace, int& exit_code) {
+  struct Options {
+    std::string in, out;
+    std::vector<std::string> maps;
+    ConvertOptions convert;
+    bool passthrough = false;
+    TraceLimits limits;
+  };
+  auto* command = trace.add_subcommand("convert", "A foreign CSV, or a trace in the other format, to a trace");
+  auto o = std::make_shared<Options>();
+  command->add_option("FILE", o->in, "Foreign CSV, or a trace")->required();
+  command->add_option("-o,--out", o->out, "Trace to write, .csv or .h5")->required();
+  command->add_option("--kind", o->convert.kind, "haptic, wii or encoder");
+  command
+      ->add_option("--map", o->maps, "TARGET=COLUMN*SCALE+OFFSET, COLUMN a name or a number from 1; TARGET=:CONSTANT")
+      ->take_all();
+  command->add_option("--rate", o->convert.rate_hz, "Samples per second: time is row / rate");
+  command->add_option("--time", o->convert.time_column, "Column with the time, shifted to begin at 0");
+  command->add_option("--time-scale", o->convert.time_scale, "Seconds per unit of the time column");
+  command->add_option("--every", o->convert.every, "Take every n-th row")->check(CLI::PositiveNumber);
+  command->add_option("--skip", o->convert.skip_rows, "Rows before the column names or the first number");
+  command->add_flag("--cumulative", o->convert.cumulative, "Encoder columns are increments: sum them up");
+  command->add_option("--source", o->convert.source, "Who recorded what with what");
+  command->add_flag("--resort", o->limits.resort, "Sort the samples of a trace by time first");
+  command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s in a trace");
+  command->footer(
+      "Example: verisim trace convert q1a_rigid.csv -o rigid.csv --time t_s --every 2 --map px=x_m_rad*0.075");
+  command->callback([=, &exit_code] {
+    const std::string content = content_of(o->in);
+    if (o->maps.empty()) {
+      write_trace(o->out, parse_trace(o->in, content, "", o->limits));
+    } else {
+      for (const std::string& map : o->maps) o->convert.mappings.push_back(parse_mapping(map));
+      if (o->convert.source.empty()) o->convert.source = std::filesystem::path(o->in).filename().string();
+      write_trace(o->out, convert_csv(o->in, content, o->convert));
+    }
+    exit_code = 0;
+  });
+}
+
+void add_synth(CLI::App& trace, int& exit_code) {
+  struct Options {
+    std::string kind, out;
+    std::vector<std::string> sets;
+    std::uint64_t seed = 1;
+  };
+  auto* command = trace.add_subcommand("synth", "Makes a trace from a formula");
+  auto o = std::make_shared<Options>();
+  command->add_option("KIND", o->kind, "What to make: " + synthesizer_help())->required();
+  command->add_option("-o,--out", o->out, "Trace to write, .csv or .h5")->required();
+  command->add_option("--set", o->sets, "KEY=NUMBER: a parameter of the kind")->take_all();
+  command->add_option("--seed", o->seed, "Seed of its random streams");
+  command->footer("Example: verisim trace synth insertion -o insert.csv --set depth=0.3");
+  command->callback([=, &exit_code] {
+    std::map<std::string, double> parameters;
+    for (const auto& [key, value] : split_pairs("--set", o->sets)) {
+      char* end = nullptr;
+      parameters[key] = std::strtod(value.c_str(), &end);
+      if (end == value.c_str() || *end != '\0')
+        fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
+    }
+    write_trace(o->out, synthesize(o->kind, parameters, o->seed));
+    exit_code = 0;
+  });
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("trace", "Looks at, converts and synthesizes traces");
+  command->require_subcommand(1);
+  add_info(*command, exit_code);
+  add_convert(*command, exit_code);
+  add_synth(*command, exit_code);
+}
+
+}  // namespace verisim::cli

@@ -1,0 +1,70 @@
+-- The dissertation's trial (section 8.5): an operator pushes a pin through a block and pulls it back, again and again,
+-- through a Phantom Omni whose motion is scaled by 4. Pin radius 70 mm in a hole of 75 mm, block 200 mm, pin 400 mm,
+-- voxels of 4.5 mm, 45.8 s. `half=true` gives the sizes of the published script instead (block 100 mm, pin 200 mm).
+local p = params{
+  clearance = 0.005,        -- m, between pin and hole, on the radius
+  voxelsize = 0.0045,       -- m
+  approach = 0.003,         -- m, how far the operator misjudges the hole's place, sideways
+  tilt = deg(1),            -- rad, how far the operator misjudges its direction
+  tremor = 0.0005,          -- m rms, at the hand
+  duration = 45.833,        -- s
+  half = false,
+  hybrid = "off",
+  integrator = "semi-implicit",
+}
+
+local hole = 0.075
+local size = p.half and 0.5 or 1
+local block_height, pin_length = 0.2 * size, 0.4 * size
+local scale = 4
+
+defineSimulationParameters{
+  maxStiffness = 300, maxAngularStiffness = 0.1,
+  hybrid = p.hybrid, integrator = p.integrator, duration = p.duration,
+}
+
+addObject{
+  name = "block", fixed = true, density = 10, voxelsize = p.voxelsize,
+  Solid.box{0.375, 0.375, block_height} - Solid.cylinder{radius = hole, height = block_height},
+}
+
+local up = block_height / 2 + 0.05 + pin_length / 2          -- pin's centre while its end is 50 mm above the block
+local through = -block_height / 2 - 0.03 + pin_length / 2    -- while its end is 30 mm below
+local pin = addObject{
+  name = "pin", density = 10, voxelsize = p.voxelsize, position = {0, 0, up},
+  Solid.cylinder{radius = hole - p.clearance, height = pin_length},
+}
+
+local omni = Devices.Sensable.PhantomOmni{
+  name = "omni", scale = scale, forces = true,
+  operator = Devices.Hand{
+    name = "operator", ["repeat"] = true,
+    path = {
+      {position = {0, 0, up / scale}, dwell = 0.2},
+      {position = {0, 0, through / scale}, speed = 0.09, dwell = 0.1},
+    },
+    error = {p.approach / scale, 0, 0}, angularError = {0, p.tilt, 0},
+    tremor = p.tremor, angularTremor = 0.2 * p.tilt,
+    lead = 0.02, patience = 1.5,
+  },
+}
+addDevice(omni)
+grasp(omni, pin)
+
+-- A pass: the pin's end came from above the block to below it.
+local passes, deepest, above = 0, 0, true
+Actions.addFrameAction(function()
+  while true do
+    local bottom = pin.position[3] - pin_length / 2
+    deepest = math.max(deepest, block_height / 2 - bottom)
+    if bottom > block_height / 2 then above = true end
+    if above and bottom < -block_height / 2 then
+      above, passes = false, passes + 1
+      event("passed", string.format("pin is through for the %d. time", passes))
+    end
+    measure("passes", passes, "1")
+    measure("depth", deepest, "m")
+    outcome(passes > 0 and "inserted" or "not inserted")
+    Actions.waitForRedraw()
+  end
+end)
