@@ -1,0 +1,182 @@
+#include "engine/geometry/cad_client.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+extern char** environ;
+
+namespace verisim {
+namespace {
+
+std::string find_program() {
+  if (const char* named = std::getenv("VERISIM_CAD"); named != nullptr && *named != '\0') return named;
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const std::filesystem::path& candidate : {folder / "verisim-cad", folder.parent_path() / "verisim-cad"}) {
+    if (std::filesystem::exists(candidate, ignored)) return candidate;
+  }
+  fail(ErrorKind::io,
+       "verisim-cad is not beside this program (in '{}'); build or install it there, or name it in VERISIM_CAD",
+       folder.string());
+}
+
+/// A descriptor that is closed with its owner.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { reset(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  void reset(int fd = -1) {
+    if (fd_ >= 0) close(fd_);
+    fd_ = fd;
+  }
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+/// The running program. Its stdin and stdout are one socket pair each: unlike a pipe, a socket whose reader died can be
+/// written to without a SIGPIPE.
+class Process {
+ public:
+  explicit Process(const std::string& program) {
+    Descriptor child_in;
+    Descriptor child_out;
+    connect(to, child_in);
+    connect(from, child_out);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, child_in.get(), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, child_out.get(), STDOUT_FILENO);
+    char* const arguments[] = {const_cast<char*>(program.c_str()), nullptr};
+    const int failure = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failure != 0) {
+      pid_ = -1;
+      fail(ErrorKind::io, "{}: cannot be started ({}); build or install verisim-cad beside this program", program,
+           std::generic_category().message(failure));
+    }
+  }
+  ~Process() {
+    if (pid_ < 0) return;
+    kill(pid_, SIGKILL);
+    static_cast<void>(wait());
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// Waits for its end; the status as waitpid gives it.
+  [[nodiscard]] int wait() {
+    int status = 0;
+    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) continue;
+    pid_ = -1;
+    return status;
+  }
+
+  Descriptor to;
+  Descriptor from;
+
+ private:
+  static void connect(Descriptor& ours, Descriptor& theirs) {
+    int pair[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) {
+      fail(ErrorKind::io, "verisim-cad cannot be reached: {}", std::generic_category().message(errno));
+    }
+    ours.reset(pair[0]);
+    theirs.reset(pair[1]);
+    fcntl(pair[0], F_SETFL, O_NONBLOCK);
+  }
+
+  pid_t pid_ = -1;
+};
+
+/// Sends and receives at once, so that neither side can wait for the other for ever.
+class Exchange {
+ public:
+  Exchange(Process& process, std::string_view request) : process_(process), unsent_(request) {}
+
+  /// Everything that the process answers until it closes its end; nothing if the limit passes first.
+  std::optional<std::string> run(double time_limit_s) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(time_limit_s);
+    while (!closed_) {
+      const std::chrono::duration<double, std::milli> left = end - std::chrono::steady_clock::now();
+      if (left.count() <= 0) return std::nullopt;
+      pollfd ready[2] = {{process_.from.get(), POLLIN, 0}, {unsent_.empty() ? -1 : process_.to.get(), POLLOUT, 0}};
+      if (poll(ready, 2, static_cast<int>(left.count()) + 1) < 0 && errno != EINTR) {
+        fail(ErrorKind::io, "verisim-cad cannot be waited for: {}", std::generic_category().message(errno));
+      }
+      if (ready[1].revents != 0) send_some();
+      if (ready[0].revents != 0) receive_some();
+    }
+    return std::move(answer_);
+  }
+
+ private:
+  void send_some() {
+    const ssize_t n = send(process_.to.get(), unsent_.data(), unsent_.size(), MSG_NOSIGNAL);
+    if (n > 0) unsent_.remove_prefix(static_cast<std::size_t>(n));
+    // A process that no longer reads has ended or is about to: its exit status tells why.
+    if (n < 0 && errno != EAGAIN && errno != EINTR) unsent_ = {};
+    if (unsent_.empty()) shutdown(process_.to.get(), SHUT_WR);
+  }
+
+  void receive_some() {
+    char buffer[1 << 16];
+    const ssize_t n = recv(process_.from.get(), buffer, sizeof buffer, 0);
+    if (n > 0) answer_.append(buffer, static_cast<std::size_t>(n));
+    if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) closed_ = true;
+  }
+
+  Process& process_;
+  std::string_view unsent_;
+  std::string answer_;
+  bool closed_ = false;
+};
+
+[[noreturn]] void fail_crashed(const std::string& subject, int status) {
+  const std::string how = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
+                                              : fmt::format("exit code {}", WEXITSTATUS(status));
+  fail(ErrorKind::input,
+       "{}: the CAD kernel crashed while reading ({}); the file is damaged or beyond it; open it in a CAD program and "
+       "export "
+       "it again",
+       subject, how);
+}
+
+}  // namespace
+
+Message ask_cad(const Message& request, const std::string& subject, double time_limit_s) {
+  const std::string bytes = encode(request);
+  Process process(find_program());
+  const std::optional<std::string> answer = Exchange(process, bytes).run(time_limit_s);
+  if (!answer) {
+    fail(ErrorKind::input,
+         "{}: the CAD kernel did not finish within {} s and was stopped; the file is damaged or beyond it; simplify it "
+         "or "
+         "export it again",
+         subject, time_limit_s);
+  }
+  const int status = process.wait();
+  if (!WIFEXITED(status) || answer->empty()) fail_crashed(subject, status);
+  Message message = decode(*answer);
+  if (WEXITSTATUS(status) != 0) {
+    if (message.size() != 1 || message.front().name != "error") fail_crashed(subject, status);
+    throw Error(static_cast<ErrorKind>(WEXITSTATUS(status)), text_of(message.front(), "text"));
+  }
+  return message;
+}
+
+}  // namespace verisim

@@ -1,0 +1,21 @@
+// Asks the CAD program (verisim-cad) and waits for its answer, whatever becomes of it: it may crash or hang on a
+// damaged file, and that is bad input here.
+#pragma once
+
+#include <string>
+
+#include "engine/geometry/message.hpp"
+
+namespace verisim {
+
+inline constexpr double kCadTimeLimit = 120;  ///< s; the largest model known to load takes a tenth of it
+
+/// Starts verisim-cad, sends the request and returns its answer. `subject` (a file's path) begins the error texts.
+/// verisim-cad is looked for in the environment variable VERISIM_CAD, beside the running program and one folder above.
+/// Leaves no process and no descriptor behind. About 15 ms for starting the program.
+///
+/// Errors: what the program reports, with its kind; Error(input) if it crashes or passes the time limit; Error(io) if
+/// it cannot be started.
+[[nodiscard]] Message ask_cad(const Message& request, const std::string& subject, double time_limit_s = kCadTimeLimit);
+
+}  // namespace verisim

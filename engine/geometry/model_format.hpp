@@ -1,0 +1,11 @@
+// Which format a model file has: its extension says it, as everywhere.
+#pragma once
+
+#include <string>
+
+namespace verisim {
+
+/// The extension in lower case without its dot: "stl" for "a/Peg.STL".
+[[nodiscard]] std::string extension_of(const std::string& path);
+
+}  // namespace verisim

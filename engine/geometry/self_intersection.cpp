@@ -1,0 +1,96 @@
+// The only file that includes CGAL. Works on the triangles as they are instead of on CGAL's halfedge meshes, which can
+// hold no non-manifold edge; the predicates are exact, so the answer does not depend on the machine.
+#include "engine/geometry/self_intersection.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/geometry/mesh_edges.hpp"
+
+namespace verisim {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
+using Triangle = std::array<std::uint32_t, 3>;
+
+class Crossings {
+ public:
+  explicit Crossings(const TriangleMesh& mesh) : mesh_(mesh) {}
+
+  /// Do triangles s and t meet elsewhere than along the corners and edges that they share?
+  [[nodiscard]] bool cross(const Triangle& s, const Triangle& t) const {
+    // Corners that both have come first, in both in the same order: then the cases differ by their number alone.
+    Triangle a = s;
+    Triangle b = t;
+    unsigned shared = 0;
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto match = std::find(b.begin() + shared, b.end(), a[i]);
+      if (match == b.end()) continue;
+      std::swap(a[i], a[shared]);
+      std::iter_swap(match, b.begin() + shared);
+      ++shared;
+    }
+    if (shared == 3) return false;
+    if (shared == 2) return folded_flat(a, b);
+    if (shared == 1) {
+      return CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(b[1]), point(b[2]))) ||
+             CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(a[1]), point(a[2])));
+    }
+    return CGAL::do_intersect(triangle(a), triangle(b));
+  }
+
+ private:
+  /// Two triangles on the edge a[0] a[1] overlap only if they lie in one plane on the same side of it.
+  [[nodiscard]] bool folded_flat(const Triangle& a, const Triangle& b) const {
+    return CGAL::coplanar(point(a[0]), point(a[1]), point(a[2]), point(b[2])) &&
+           CGAL::coplanar_orientation(point(a[0]), point(a[1]), point(a[2]), point(b[2])) == CGAL::POSITIVE;
+  }
+  [[nodiscard]] Kernel::Point_3 point(std::uint32_t i) const {
+    const Vector3d& p = mesh_.vertices[i];
+    return {p.x(), p.y(), p.z()};
+  }
+  [[nodiscard]] Kernel::Triangle_3 triangle(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
+
+  const TriangleMesh& mesh_;
+};
+
+std::vector<Box> boxes_of(const TriangleMesh& mesh) {
+  std::vector<Box> boxes;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (is_degenerate(mesh, mesh.triangles[t])) continue;
+    Bounds bounds;
+    for (const std::uint32_t corner : mesh.triangles[t]) bounds.include(mesh.vertices[corner]);
+    boxes.emplace_back(
+        CGAL::Bbox_3(bounds.min.x(), bounds.min.y(), bounds.min.z(), bounds.max.x(), bounds.max.y(), bounds.max.z()),
+        t);
+  }
+  return boxes;
+}
+
+}  // namespace
+
+SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
+  const Crossings crossings(mesh);
+  SelfIntersections found;
+  std::pair<std::uint32_t, std::uint32_t> first = {kNoFace, kNoFace};
+  std::vector<Box> boxes = boxes_of(mesh);
+  // The sweep visits pairs in an order of its own: the count and the smallest pair do not depend on it.
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+    const auto [s, t] = std::minmax(a.info(), b.info());
+    if (!crossings.cross(mesh.triangles[s], mesh.triangles[t])) return;
+    ++found.pairs;
+    first = std::min(first, {s, t});
+  });
+  if (found.pairs > 0) {
+    Bounds bounds;
+    for (const std::uint32_t corner : mesh.triangles[first.first]) bounds.include(mesh.vertices[corner]);
+    found.where = bounds.center();
+  }
+  return found;
+}
+
+}  // namespace verisim
