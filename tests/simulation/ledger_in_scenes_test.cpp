@@ -1,0 +1,48 @@
+// The energy ledger closes in whole scenes: what is left over is rounding (dynamics/ledger.hpp).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/simulation/scenes.hpp"
+
+namespace verisim {
+namespace {
+
+/// The largest residual of a run over the energy that went through it.
+double worst_residual(Scene scene, double* contact_work) {
+  Simulation simulation(std::move(scene), {});
+  double residual = 0;
+  double through = 0;
+  while (simulation.frame() < simulation.frames_planned()) {
+    simulation.step();
+    const Simulation::Energy e = simulation.energy();
+    residual = std::max(residual, std::abs(e.residual));
+    through = std::max({through, std::abs(e.input), std::abs(e.gravity), e.kinetic});
+    *contact_work = e.contact;
+  }
+  return residual / through;
+}
+
+// Sums of some ten thousand works of each at most the whole energy, each rounded a few times: under 1e-16 * 1e4 * 10.
+constexpr double kRounding = 1e-11;
+
+TEST(LedgerInScenes, ClosesWhileAHandPushesAPinIntoAHole) {
+  for (const Integrator integrator : {Integrator::semi_implicit, Integrator::implicit}) {
+    Scene scene = scenes::pin_in_hole();
+    scene.parameters.integrator = integrator;
+    double contact = 0;
+    EXPECT_LT(worst_residual(std::move(scene), &contact), kRounding);
+    EXPECT_NE(contact, 0);
+  }
+}
+
+TEST(LedgerInScenes, ClosesWhileBoxesFall) {
+  for (const Integrator integrator : {Integrator::semi_implicit, Integrator::implicit}) {
+    double contact = 0;
+    EXPECT_LT(worst_residual(scenes::falling_boxes(3, integrator), &contact), kRounding);
+    EXPECT_GT(contact, 0) << "contacts take energy from what falls";
+  }
+}
+
+}  // namespace
+}  // namespace verisim
