@@ -1,10 +1,11 @@
-// Run files (HDF5): what a run was, did and cost. The layout is INTERFACES section 2; the columns come from a Schema that
-// the simulation fills, so that what is stored, hashed and documented is one table.
+// Run files (HDF5): what a run was, did and cost. The layout is INTERFACES section 2; the columns come from a Schema
+// that the simulation fills, so that what is stored, hashed and documented is one table.
 //
 // Writing. The simulation thread fills rows of a ring; one writer thread appends them (SWMR, H5Fflush). The loop never
 // allocates, locks or writes. A process killed at any moment leaves a file that h5py opens with swmr=True and that
 // recover() closes; at most the last 100 ms of simulated frames are missing. Before the first frame is safe on disk no
-// file of that name exists (it is written beside it as ".part" and renamed); a former file of that name stays until then.
+// file of that name exists (it is written beside it as ".part" and renamed); a former file of that name stays until
+// then.
 #pragma once
 
 #include <cstdint>
@@ -22,25 +23,27 @@ namespace verisim {
 
 /// One dataset of which every frame adds a row.
 struct Column {
-  std::string path;         ///< "/state/body/pin/pose"
+  std::string path;  ///< "/state/body/pin/pose"
   Dtype dtype = Dtype::f64;
-  std::size_t width = 1;    ///< 1: dataset of shape [N]; else [N, width]
+  std::size_t width = 1;  ///< 1: dataset of shape [N]; else [N, width]
   std::string units;
   std::string description;
-  std::size_t offset = 0;   ///< bytes from the start of the row; set by Schema::add
-  std::vector<std::string> enum_names;  ///< not empty: value i means enum_names[i] (written as an HDF5 enum for u8)
+  std::size_t offset = 0;  ///< bytes from the start of the row; set by Schema::add
+  /// u8 of width 1: value i means enum_names[i] (an HDF5 enum). Otherwise names of the components (stages of /timing).
+  std::vector<std::string> enum_names;
   [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
 };
 
-/// The columns of a run, packed without padding in the order of adding; /state columns first, so that the state of a row
-/// is one run of bytes.
+/// The columns of a run, packed without padding in the order of adding; /state columns first, so that the state of a
+/// row is one run of bytes.
 class Schema {
  public:
   /// Returns the column's index. Throws Error(input) if the path exists already (two bodies of one name).
   std::size_t add(Column column);
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }
-  [[nodiscard]] std::size_t state_bytes() const { return state_bytes_; }  ///< length of the leading /state part, without /state/hash
+  /// Length of the leading /state part, without /state/hash.
+  [[nodiscard]] std::size_t state_bytes() const { return state_bytes_; }
 
  private:
   std::vector<Column> columns_;
@@ -52,15 +55,15 @@ using Attribute = std::variant<std::string, double, std::int64_t>;
 
 /// A file that the run read, as it was.
 struct InputFile {
-  std::string name;      ///< as the scenario names it, relative to its folder
-  std::string sha256;    ///< of the content
-  std::string content;   ///< empty with --no-embed
+  std::string name;     ///< as the scenario names it, relative to its folder
+  std::string sha256;   ///< of the content
+  std::string content;  ///< empty with --no-embed
   bool embedded = true;
 };
 
 /// A part that the run loaded, as tables (engine/geometry/part.hpp, to_tables).
 struct StoredModel {
-  std::string key;                               ///< file name or solid text, with the load options
+  std::string key;  ///< file name or solid text, with the load options
   std::vector<std::pair<std::string, std::vector<NamedArray>>> parts;  ///< part name, its tables
 };
 
@@ -78,9 +81,9 @@ struct Event {
 };
 
 struct RecorderOptions {
-  bool paced = false;             ///< never wait for the file: a full ring is Error(io)
+  bool paced = false;                  ///< never wait for the file: a full ring is Error(io)
   std::size_t frames_unflushed = 100;  ///< free-running: the loop waits while so many rows are not safe on disk
-  std::size_t ring_rows = 0;      ///< 0: chosen (256 free-running; 8 s of frames paced)
+  std::size_t ring_rows = 0;           ///< 0: chosen (256 free-running; 8 s of frames paced)
 };
 
 /// Writes one run. Not copyable. All functions are for the one simulation thread.
@@ -96,11 +99,12 @@ class Recorder {
   /// Throws Error(io) if the writer has failed (disk full …).
   [[nodiscard]] std::span<std::byte> begin_row();
   void end_row();
-  /// No allocation: copied into a fixed ring. If that is full, events are counted and one "events lost" is written.
+  /// No allocation: copied into a fixed ring. If that is full, the loop waits (free-running: what a file holds must not
+  /// depend on the disk); paced, events are counted and close() writes one "events lost".
   void event(double time, std::string_view kind, std::string_view text);
 
-  /// Flushes, stops the writer, writes the /summary and root attributes (state_hash …), and leaves a plainly readable file.
-  /// Atomic: until it is done the file is as a kill would leave it.
+  /// Flushes, stops the writer, writes the /summary and root attributes (state_hash …), and leaves a plainly readable
+  /// file. Atomic: until it is done the file is as a kill would leave it.
   void close(const std::map<std::string, Attribute>& summary, const std::map<std::string, Attribute>& root);
 
  private:
@@ -117,10 +121,10 @@ class RunFile {
   RunFile(RunFile&&) noexcept;
 
   [[nodiscard]] const RunHeader& header() const;
-  [[nodiscard]] const std::map<std::string, Attribute>& summary() const;  ///< empty if the run was killed
-  [[nodiscard]] const Schema& schema() const;                              ///< as stored
-  [[nodiscard]] std::size_t rows() const;                                  ///< the shortest column's length
-  [[nodiscard]] std::vector<std::byte> column(const Column& column) const; ///< rows() * column.bytes()
+  [[nodiscard]] const std::map<std::string, Attribute>& summary() const;    ///< empty if the run was killed
+  [[nodiscard]] const Schema& schema() const;                               ///< as stored
+  [[nodiscard]] std::size_t rows() const;                                   ///< the shortest column's length
+  [[nodiscard]] std::vector<std::byte> column(const Column& column) const;  ///< rows() * column.bytes()
   [[nodiscard]] std::vector<Event> events() const;
   [[nodiscard]] bool recovered() const;
 

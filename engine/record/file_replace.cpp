@@ -1,0 +1,140 @@
+#include "engine/record/file_replace.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.hpp"
+
+namespace verisim {
+namespace {
+
+/// A file descriptor that is closed at the end of its scope.
+struct Descriptor {
+  int id;
+  explicit Descriptor(int number) : id(number) {}
+  ~Descriptor() {
+    if (id >= 0) ::close(id);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+};
+
+constexpr mode_t kPermissions = 0666;  // less the user's umask
+
+[[noreturn]] void refuse(const std::string& path) {
+  refuse_write(path, system_cause());
+}
+
+void write_all(const std::string& path, int to, const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(to, data, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) refuse(path);
+    data += written;
+    size -= static_cast<std::size_t>(written);
+  }
+}
+
+// For file systems between which copy_file_range does not work.
+void copy_by_reading(const std::string& path, int from, int to) {
+  std::vector<char> buffer(1 << 20);
+  for (;;) {
+    const ssize_t count = ::read(from, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse(path);
+    if (count == 0) return;
+    write_all(path, to, buffer.data(), static_cast<std::size_t>(count));
+  }
+}
+
+}  // namespace
+
+void refuse_write(const std::string& path, const std::string& cause) {
+  fail(ErrorKind::io, "{}: cannot be written ({}); free some space or choose another place", path, cause);
+}
+
+std::string system_cause() {
+  return std::generic_category().message(errno);
+}
+
+Replacement::~Replacement() {
+  if (!committed_) ::unlink(path_.c_str());
+}
+
+void Replacement::copy_from(int descriptor) const {
+  const Descriptor to(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
+  if (to.id < 0) refuse(path_);
+  if (::lseek(descriptor, 0, SEEK_SET) < 0) refuse(path_);
+  for (;;) {
+    const ssize_t count = ::copy_file_range(descriptor, nullptr, to.id, nullptr, std::size_t{1} << 30, 0);
+    if (count == 0) return;
+    if (count > 0 || errno == EINTR) continue;
+    if (errno != EXDEV && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP) refuse(path_);
+    copy_by_reading(path_, descriptor, to.id);
+    return;
+  }
+}
+
+void Replacement::write(const std::string& content) const {
+  const Descriptor to(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
+  if (to.id < 0) refuse(path_);
+  write_all(path_, to.id, content.data(), content.size());
+}
+
+void Replacement::commit() {
+  if (committed_) return;
+  if (std::rename(path_.c_str(), target_.c_str()) != 0) refuse(target_);
+  committed_ = true;
+}
+
+MarkedFile::MarkedFile(const std::string& path, Mark mark) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  if (descriptor_ < 0) return;
+  refused_ = ::flock(descriptor_, (mark == Mark::writer ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+MarkedFile::~MarkedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Reservation::Reservation(const std::string& path)
+    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+  if (descriptor_ < 0) refuse(path_);
+}
+
+Reservation::~Reservation() {
+  ::close(descriptor_);
+}
+
+void Reservation::ensure(std::uint64_t bytes, std::uint64_t step) {
+  struct stat info {};
+  if (::fstat(descriptor_, &info) != 0) refuse(path_);
+  const auto size = static_cast<std::uint64_t>(info.st_size);
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && size + bytes > limit.rlim_cur) {
+    errno = EFBIG;  // the user's own limit, which reserving does not meet
+    refuse(path_);
+  }
+  if (size + bytes <= end_) return;
+  const auto reserve = [&](std::uint64_t length) {
+    return ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, info.st_size, static_cast<off_t>(length)) == 0;
+  };
+  end_ = size + bytes + step;
+  if (reserve(bytes + step) || errno == EOPNOTSUPP || errno == ENOSYS) return;
+  end_ = size + bytes;  // the last of the disk
+  if (!reserve(bytes)) refuse(path_);
+}
+
+bool is_being_written(const std::string& path) {
+  return MarkedFile(path, MarkedFile::Mark::exclusive).refused();
+}
+
+}  // namespace verisim

@@ -1,0 +1,320 @@
+#include "engine/record/hdf5_wrapper.hpp"
+
+#include <cstring>
+#include <memory>
+
+namespace verisim::hdf5 {
+namespace {
+
+std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+// HDF5 reports the system's reason inside a sentence: "... errno = 28, error message = 'No space left on device', buf
+// ...".
+herr_t find_cause(unsigned, const H5E_error2_t* error, void* cause) {
+  const std::string text = error->desc != nullptr ? error->desc : "";
+  const std::string mark = "error message = '";
+  auto& found = *static_cast<std::string*>(cause);
+  const auto from = text.find(mark);
+  if (from != std::string::npos) {
+    const auto start = from + mark.size();
+    found = text.substr(start, text.find('\'', start) - start);
+  } else if (found.empty()) {
+    found = text;  // the innermost sentence, if the system gave no reason
+  }
+  return 0;
+}
+
+Handle string_type(std::size_t size) {
+  Handle type(check(H5Tcopy(H5T_C_S1), "string type"), H5Tclose);
+  check_status(H5Tset_size(type, size), "string length");
+  check_status(H5Tset_cset(type, H5T_CSET_UTF8), "string encoding");
+  return type;
+}
+
+Handle simple_space(const Shape& shape) {
+  if (shape.empty()) return {check(H5Screate(H5S_SCALAR), "shape"), H5Sclose};
+  return {check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), "shape"), H5Sclose};
+}
+
+void write_typed(hid_t object, const std::string& name, hid_t stored, hid_t memory, const Shape& shape,
+                 const void* value) {
+  const Handle space = simple_space(shape);
+  const Handle attribute(check(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT), name.c_str()),
+                         H5Aclose);
+  check_status(H5Awrite(attribute, memory, value), name.c_str());
+}
+
+std::string trimmed(std::string text) {
+  const auto end = text.find('\0');
+  if (end != std::string::npos) text.resize(end);
+  return text;
+}
+
+// All elements of a string attribute, whether their length is fixed or not.
+std::vector<std::string> string_elements(hid_t attribute, hid_t type, std::size_t count) {
+  std::vector<std::string> values;
+  if (H5Tis_variable_str(type) > 0) {
+    std::vector<char*> pointers(count, nullptr);
+    const Handle memory = string_type(H5T_VARIABLE);
+    check_status(H5Aread(attribute, memory, pointers.data()), "text attribute");
+    for (char* p : pointers) {
+      values.emplace_back(p != nullptr ? p : "");
+      H5free_memory(p);
+    }
+    return values;
+  }
+  const std::size_t size = H5Tget_size(type);
+  std::string bytes(size * count, '\0');
+  check_status(H5Aread(attribute, type, bytes.data()), "text attribute");
+  for (std::size_t i = 0; i < count; ++i) values.push_back(trimmed(bytes.substr(i * size, size)));
+  return values;
+}
+
+struct OpenAttribute {
+  Handle id, type, space;
+  std::size_t count = 0;
+};
+
+OpenAttribute open_attribute(hid_t object, const std::string& name) {
+  OpenAttribute a;
+  a.id = Handle(check(H5Aopen(object, name.c_str(), H5P_DEFAULT), name.c_str()), H5Aclose);
+  a.type = Handle(check(H5Aget_type(a.id), name.c_str()), H5Tclose);
+  a.space = Handle(check(H5Aget_space(a.id), name.c_str()), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(a.space);
+  if (count < 0 || static_cast<hsize_t>(count) > H5Aget_storage_size(a.id)) throw Failure(name + ": damaged attribute");
+  a.count = static_cast<std::size_t>(count);
+  return a;
+}
+
+}  // namespace
+
+Session::Session() : lock_(library_mutex()) {
+  // Files are closed by their owners. A file that the disk refused cannot be closed, and HDF5's own clean-up at exit
+  // would then retry and complain on the terminal.
+  static const herr_t no_exit_handler = H5dont_atexit();
+  static_cast<void>(no_exit_handler);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread in a thread-safe build
+}
+
+hid_t check(hid_t result, const char* what) {
+  if (result >= 0) return result;
+  std::string cause;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_cause, &cause);
+  H5Eclear2(H5E_DEFAULT);
+  throw Failure(cause.empty() ? std::string(what) : cause);
+}
+
+Handle file_access() {
+  Handle list(check(H5Pcreate(H5P_FILE_ACCESS), "access"), H5Pclose);
+  check_status(H5Pset_libver_bounds(list, H5F_LIBVER_V110, H5F_LIBVER_V110), "format");
+  check_status(H5Pset_fclose_degree(list, H5F_CLOSE_STRONG), "access");
+  check_status(H5Pset_file_locking(list, true, true), "locking");
+  return list;
+}
+
+Handle file_creation() {
+  Handle list(check(H5Pcreate(H5P_FILE_CREATE), "creation"), H5Pclose);
+  check_status(H5Pset_obj_track_times(list, false), "times");  // equal runs, equal bytes
+  check_status(H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), "order");
+  return list;
+}
+
+Handle link_creation() {
+  Handle list(check(H5Pcreate(H5P_LINK_CREATE), "links"), H5Pclose);
+  check_status(H5Pset_create_intermediate_group(list, 1), "links");
+  check_status(H5Pset_char_encoding(list, H5T_CSET_UTF8), "links");
+  return list;
+}
+
+Handle open_group(hid_t location, const std::string& path) {
+  return {check(H5Gopen2(location, path.c_str(), H5P_DEFAULT), path.c_str()), H5Gclose};
+}
+
+Handle create_group(hid_t location, const std::string& path) {
+  const Handle links = link_creation();
+  const Handle creation(check(H5Pcreate(H5P_GROUP_CREATE), "group"), H5Pclose);
+  check_status(H5Pset_obj_track_times(creation, false), "times");
+  return {check(H5Gcreate2(location, path.c_str(), links, creation, H5P_DEFAULT), path.c_str()), H5Gclose};
+}
+
+Handle open_dataset(hid_t location, const std::string& path) {
+  return {check(H5Dopen2(location, path.c_str(), H5P_DEFAULT), path.c_str()), H5Dclose};
+}
+
+bool exists(hid_t location, const std::string& name) {
+  return H5Lexists(location, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+hid_t stored_type(Dtype dtype) {
+  switch (dtype) {
+    case Dtype::f64:
+      return H5T_IEEE_F64LE;
+    case Dtype::f32:
+      return H5T_IEEE_F32LE;
+    case Dtype::u64:
+      return H5T_STD_U64LE;
+    case Dtype::u32:
+      return H5T_STD_U32LE;
+    case Dtype::u16:
+      return H5T_STD_U16LE;
+    case Dtype::u8:
+      return H5T_STD_U8LE;
+    case Dtype::i32:
+      return H5T_STD_I32LE;
+    case Dtype::i8:
+      return H5T_STD_I8LE;
+  }
+  return -1;
+}
+
+hid_t memory_type(Dtype dtype) {
+  switch (dtype) {
+    case Dtype::f64:
+      return H5T_NATIVE_DOUBLE;
+    case Dtype::f32:
+      return H5T_NATIVE_FLOAT;
+    case Dtype::u64:
+      return H5T_NATIVE_UINT64;
+    case Dtype::u32:
+      return H5T_NATIVE_UINT32;
+    case Dtype::u16:
+      return H5T_NATIVE_UINT16;
+    case Dtype::u8:
+      return H5T_NATIVE_UINT8;
+    case Dtype::i32:
+      return H5T_NATIVE_INT32;
+    case Dtype::i8:
+      return H5T_NATIVE_INT8;
+  }
+  return -1;
+}
+
+Dtype dtype_of_stored(hid_t type) {
+  for (const Dtype d : {Dtype::f64, Dtype::f32, Dtype::u64, Dtype::u32, Dtype::u16, Dtype::u8, Dtype::i32, Dtype::i8}) {
+    if (H5Tequal(type, stored_type(d)) > 0) return d;
+  }
+  throw Failure("a number type that this program does not write");
+}
+
+Shape checked_shape(hid_t dataset, std::size_t element_bytes) {
+  const Handle space(check(H5Dget_space(dataset), "shape"), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 0 || rank > H5S_MAX_RANK) throw Failure("damaged shape");
+  Shape shape(static_cast<std::size_t>(rank));
+  check_status(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "shape");
+  const hsize_t stored = H5Dget_storage_size(dataset) / element_bytes;
+  hsize_t elements = 1;
+  for (const hsize_t n : shape) {
+    if (n != 0 && elements > stored / n) throw Failure("a dataset claims more values than it holds");
+    elements *= n;
+  }
+  return shape;
+}
+
+Handle write_array(hid_t location, const std::string& path, Dtype dtype, const Shape& shape, const void* data,
+                   const std::string& units, const std::string& description) {
+  const Handle links = link_creation();
+  const Handle creation(check(H5Pcreate(H5P_DATASET_CREATE), "dataset"), H5Pclose);
+  check_status(H5Pset_obj_track_times(creation, false), "times");
+  const Handle space = simple_space(shape);
+  Handle dataset(
+      check(H5Dcreate2(location, path.c_str(), stored_type(dtype), space, links, creation, H5P_DEFAULT), path.c_str()),
+      H5Dclose);
+  if (H5Sget_simple_extent_npoints(space) > 0) {
+    check_status(H5Dwrite(dataset, memory_type(dtype), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path.c_str());
+  }
+  write_attribute(dataset, "units", units);
+  write_attribute(dataset, "description", description);
+  return dataset;
+}
+
+void write_attribute(hid_t object, const std::string& name, const Attribute& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const Handle type = string_type(H5T_VARIABLE);
+    const char* pointer = text->c_str();
+    write_typed(object, name, type, type, {}, &pointer);
+  } else if (const auto* number = std::get_if<double>(&value)) {
+    write_typed(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {}, number);
+  } else {
+    write_typed(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {}, &std::get<std::int64_t>(value));
+  }
+}
+
+void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& values) {
+  const Handle type = string_type(H5T_VARIABLE);
+  std::vector<const char*> pointers;
+  for (const std::string& value : values) pointers.push_back(value.c_str());
+  write_typed(object, name, type, type, {values.size()}, pointers.data());
+}
+
+bool has_attribute(hid_t object, const std::string& name) {
+  return H5Aexists(object, name.c_str()) > 0;
+}
+
+Attribute read_attribute(hid_t object, const std::string& name) {
+  const OpenAttribute a = open_attribute(object, name);
+  if (a.count != 1) throw Failure("attribute '" + name + "' is not a single value");
+  switch (H5Tget_class(a.type)) {
+    case H5T_STRING:
+      return string_elements(a.id, a.type, 1).front();
+    case H5T_FLOAT: {
+      double value = 0;
+      check_status(H5Aread(a.id, H5T_NATIVE_DOUBLE, &value), name.c_str());
+      return value;
+    }
+    case H5T_INTEGER: {
+      std::int64_t value = 0;
+      check_status(H5Aread(a.id, H5T_NATIVE_INT64, &value), name.c_str());
+      return value;
+    }
+    default:
+      throw Failure("attribute '" + name + "' is neither text nor number");
+  }
+}
+
+std::string read_string(hid_t object, const std::string& name) {
+  const Attribute value = read_attribute(object, name);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  throw Failure("attribute '" + name + "' is not text");
+}
+
+std::int64_t read_integer(hid_t object, const std::string& name) {
+  const Attribute value = read_attribute(object, name);
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
+  throw Failure("attribute '" + name + "' is not a whole number");
+}
+
+std::vector<std::string> read_strings(hid_t object, const std::string& name) {
+  const OpenAttribute a = open_attribute(object, name);
+  if (H5Tget_class(a.type) != H5T_STRING) throw Failure("attribute '" + name + "' is not text");
+  return string_elements(a.id, a.type, a.count);
+}
+
+std::map<std::string, Attribute> read_attributes(hid_t object) {
+  std::vector<std::string> names;
+  const H5A_operator2_t collect = [](hid_t, const char* name, const H5A_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  hsize_t position = 0;
+  check_status(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names), "attributes");
+  std::map<std::string, Attribute> attributes;
+  for (const std::string& name : names) attributes.emplace(name, read_attribute(object, name));
+  return attributes;
+}
+
+std::vector<std::string> children(hid_t group) {
+  std::vector<std::string> names;
+  const H5L_iterate_t collect = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  hsize_t position = 0;
+  check_status(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names), "group");
+  return names;
+}
+
+}  // namespace verisim::hdf5

@@ -1,0 +1,85 @@
+#include "engine/record/run_columns.hpp"
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/record/hdf5_wrapper.hpp"
+#include "engine/record/run_writer.hpp"
+
+namespace verisim {
+namespace {
+
+using hdf5::Handle;
+
+Dtype number_type(hid_t dataset) {
+  const Handle type(hdf5::check(H5Dget_type(dataset), "type"), H5Tclose);
+  if (H5Tget_class(type) != H5T_ENUM) return hdf5::dtype_of_stored(type);
+  return hdf5::dtype_of_stored(Handle(hdf5::check(H5Tget_super(type), "enum"), H5Tclose));
+}
+
+StoredColumn read_column(hid_t dataset, const std::string& path) {
+  StoredColumn stored;
+  Column& column = stored.column;
+  column.path = path;
+  column.dtype = number_type(dataset);
+  const hdf5::Shape shape = hdf5::checked_shape(dataset, size_of(column.dtype));
+  if (shape.empty() || shape.size() > 2 || (shape.size() == 2 && shape[1] == 0))
+    throw hdf5::Failure(path + ": wrong shape");
+  stored.rows = shape[0];
+  column.width = shape.size() == 2 ? shape[1] : 1;
+  column.units = hdf5::read_string(dataset, "units");
+  column.description = hdf5::read_string(dataset, "description");
+  if (hdf5::has_attribute(dataset, "names")) column.enum_names = hdf5::read_strings(dataset, "names");
+  return stored;
+}
+
+void collect(hid_t group, const std::string& prefix, std::vector<std::pair<std::int64_t, StoredColumn>>& found) {
+  for (const std::string& name : hdf5::children(group)) {
+    const std::string path = prefix + "/" + name;
+    if (path == "/inputs" || path == "/summary" || path == "/events") continue;
+    const Handle object(hdf5::check(H5Oopen(group, name.c_str(), H5P_DEFAULT), path.c_str()), H5Oclose);
+    if (H5Iget_type(object) == H5I_GROUP) {
+      collect(object, path, found);
+    } else if (H5Iget_type(object) == H5I_DATASET) {
+      found.emplace_back(hdf5::read_integer(object, "order"), read_column(object, path));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<StoredColumn> read_columns(hid_t file) {
+  std::vector<std::pair<std::int64_t, StoredColumn>> found;
+  collect(file, "", found);
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<StoredColumn> columns;
+  for (auto& [order, stored] : found) {
+    if (order != static_cast<std::int64_t>(columns.size())) break;
+    columns.push_back(std::move(stored));
+  }
+  const std::int64_t promised = hdf5::read_integer(file, "columns");
+  if (static_cast<std::int64_t>(columns.size()) != promised || columns.size() != found.size()) {
+    throw hdf5::Failure("of " + std::to_string(promised) + " columns " + std::to_string(found.size()) + " are there");
+  }
+  return columns;
+}
+
+std::size_t shortest(const std::vector<StoredColumn>& columns) {
+  if (columns.empty()) return 0;
+  return std::min_element(columns.begin(), columns.end(), [](const auto& a, const auto& b) { return a.rows < b.rows; })
+      ->rows;
+}
+
+void check_is_run(const std::string& path, hid_t file) {
+  if (!hdf5::has_attribute(file, "format") ||
+      hdf5::read_attribute(file, "format") != Attribute(std::string(kRunFormat))) {
+    fail(ErrorKind::input, "{}: is an HDF5 file but no run of verisim; name a file that 'verisim run' wrote", path);
+  }
+  const std::int64_t version = hdf5::read_integer(file, "format_version");
+  if (version > kRunFormatVersion) {
+    fail(ErrorKind::input, "{}: was written by a later verisim (format {}, this one reads up to {}); update this one",
+         path, version, kRunFormatVersion);
+  }
+}
+
+}  // namespace verisim

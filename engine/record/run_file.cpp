@@ -1,0 +1,130 @@
+#include "engine/record/run_file.hpp"
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/record/hdf5_wrapper.hpp"
+#include "engine/record/heap_check.hpp"
+#include "engine/record/recover.hpp"
+#include "engine/record/run_columns.hpp"
+#include "engine/record/run_inputs.hpp"
+#include "engine/record/run_writer.hpp"
+
+namespace verisim {
+namespace {
+
+using hdf5::check;
+using hdf5::check_status;
+using hdf5::Handle;
+
+template <std::size_t N>
+std::string text_of(const char (&bytes)[N]) {
+  return std::string(bytes, std::find(bytes, bytes + N, '\0'));
+}
+
+}  // namespace
+
+struct RunFile::Implementation {
+  std::string path;
+  bool recovered = false;
+  Handle file;
+  RunHeader header;
+  std::map<std::string, Attribute> summary;
+  Schema schema;
+  std::size_t rows = 0;
+
+  ~Implementation() {
+    const hdf5::Session session;
+    file.reset();
+  }
+
+  /// Calls `work` with HDF5 at hand; what HDF5 cannot read is a damaged file.
+  template <typename Work>
+  auto reading(Work work) const {
+    const hdf5::Session session;
+    try {
+      return work();
+    } catch (const hdf5::Failure& failure) {
+      fail(ErrorKind::input, "{}: is damaged ({}); run the scenario again", path, failure.what());
+    }
+  }
+
+  void open() {
+    check_text_heaps(path);
+    file = Handle(check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, hdf5::file_access()), path.c_str()), H5Fclose);
+    check_is_run(path, file);
+    header.attributes = hdf5::read_attributes(file);
+    header.files = read_input_files(file);
+    header.models = read_input_models(file);
+    summary = hdf5::read_attributes(hdf5::open_group(file, "/summary"));
+    const std::vector<StoredColumn> columns = read_columns(file);
+    rows = shortest(columns);
+    bool state_ended = false;  // Schema::add asserts what a damaged file may break
+    for (const StoredColumn& stored : columns) {
+      const bool state = stored.column.path.starts_with("/state/") && stored.column.path != "/state/hash";
+      if (state && state_ended) throw hdf5::Failure("columns in a wrong order");
+      state_ended = !state;
+      schema.add(stored.column);
+    }
+  }
+};
+
+RunFile::RunFile(const std::string& path) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->path = path;
+  if (read_superblock(path).left_open) implementation_->recovered = recover(path).has_value();
+  implementation_->reading([&] { implementation_->open(); });
+}
+
+RunFile::~RunFile() = default;
+RunFile::RunFile(RunFile&&) noexcept = default;
+
+const RunHeader& RunFile::header() const {
+  return implementation_->header;
+}
+const std::map<std::string, Attribute>& RunFile::summary() const {
+  return implementation_->summary;
+}
+const Schema& RunFile::schema() const {
+  return implementation_->schema;
+}
+std::size_t RunFile::rows() const {
+  return implementation_->rows;
+}
+bool RunFile::recovered() const {
+  return implementation_->recovered;
+}
+
+std::vector<std::byte> RunFile::column(const Column& column) const {
+  return implementation_->reading([&] {
+    const Handle dataset = hdf5::open_dataset(implementation_->file, column.path);
+    const Handle type(check(H5Dget_type(dataset), "type"), H5Tclose);
+    const Handle space(check(H5Dget_space(dataset), "shape"), H5Sclose);
+    const hsize_t start[2] = {0, 0};
+    const hsize_t block[2] = {implementation_->rows, column.width};
+    std::vector<std::byte> values(implementation_->rows * column.bytes());
+    if (values.empty()) return values;
+    const Handle memory(check(H5Screate_simple(column.width == 1 ? 1 : 2, block, nullptr), "shape"), H5Sclose);
+    check_status(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, block, nullptr), "rows");
+    const bool named = H5Tget_class(type) == H5T_ENUM;  // an enum's bytes are read as they are stored
+    const hid_t wanted = named ? static_cast<hid_t>(type) : hdf5::memory_type(column.dtype);
+    check_status(H5Dread(dataset, wanted, memory, space, H5P_DEFAULT, values.data()), column.path.c_str());
+    return values;
+  });
+}
+
+std::vector<Event> RunFile::events() const {
+  return implementation_->reading([&] {
+    const Handle dataset = hdf5::open_dataset(implementation_->file, "/events");
+    const hdf5::Shape shape = hdf5::checked_shape(dataset, sizeof(StoredEvent));
+    if (shape.size() != 1) throw hdf5::Failure("/events: wrong shape");
+    std::vector<StoredEvent> stored(shape[0]);
+    if (!stored.empty()) {
+      check_status(H5Dread(dataset, event_type(), H5S_ALL, H5S_ALL, H5P_DEFAULT, stored.data()), "/events");
+    }
+    std::vector<Event> events;
+    for (const StoredEvent& e : stored) events.push_back({e.time, text_of(e.kind), text_of(e.text)});
+    return events;
+  });
+}
+
+}  // namespace verisim

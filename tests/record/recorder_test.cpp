@@ -1,0 +1,252 @@
+// The loop's side of recording: what it promises about memory, waiting, errors and files left behind.
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <csignal>
+#include <thread>
+
+#include "engine/base/error.hpp"
+#include "tests/record/counted_new.hpp"
+#include "tests/record/small_run.hpp"
+
+namespace verisim {
+namespace {
+
+using namespace small_run;
+
+// DESIGN rule 3. The ring is filled several times over, so that the loop also has had to wait.
+TEST(Recorder, AllocatesNothingInTheLoop) {
+  const Folder folder;
+  for (const bool paced : {false, true}) {
+    Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = paced, .ring_rows = paced ? 8192u : 0u});
+    record(recorder, 0, 1);
+    const std::size_t before = allocations();
+    for (std::uint64_t i = 1; i < 3000; ++i) {
+      fill(recorder.begin_row(), i);
+      recorder.end_row();
+      recorder.event(0.001 * static_cast<double>(i), "contact", "pin on block");
+    }
+    EXPECT_EQ(allocations() - before, 0u);
+    recorder.close({}, {});
+  }
+}
+
+TEST(Recorder, WrapsItsRingWithoutLosingARow) {
+  const Folder folder;
+  // 37 divides neither the rows nor what is flushed at once.
+  Recorder recorder(folder.file("run.h5"), schema(), header(),
+                    {.paced = false, .frames_unflushed = 30, .ring_rows = 37});
+  record(recorder, 0, 5000);
+  recorder.close({}, {});
+  const RunFile run(folder.file("run.h5"));
+  EXPECT_EQ(run.rows(), 5000u);
+  EXPECT_EQ(first_wrong_row(run), 5000u);
+}
+
+TEST(Recorder, WorksWithNothingUnsafeAtAll) {
+  const Folder folder;
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = false, .frames_unflushed = 1});
+  record(recorder, 0, 40);
+  recorder.close({}, {});
+  EXPECT_EQ(RunFile(folder.file("run.h5")).rows(), 40u);
+}
+
+TEST(Recorder, GivesRowsThatAreZero) {
+  const Folder folder;
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = false, .frames_unflushed = 4, .ring_rows = 4});
+  for (int i = 0; i < 20; ++i) {
+    const std::span<std::byte> row = recorder.begin_row();
+    ASSERT_EQ(row.size(), schema().row_bytes());
+    for (std::byte& b : row) {
+      ASSERT_EQ(b, std::byte{0});
+      b = std::byte{0xff};
+    }
+    recorder.end_row();
+  }
+}
+
+// INTERFACES section 2: paced, the loop never waits; when the file cannot keep up, that is an error, not a stall.
+TEST(Recorder, PacedSaysThatTheDiskIsTooSlow) {
+  const Folder folder;
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = true, .ring_rows = 16});
+  const Error e = error_of([&] { record(recorder, 0, 100'000); });
+  EXPECT_EQ(e.kind(), ErrorKind::io);
+  EXPECT_NE(std::string(e.what()).find("16 frames behind"), std::string::npos) << e.what();
+}
+
+TEST(Recorder, KeepsEveryEventWhenFreeRunning) {
+  const Folder folder;
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {});
+  for (int i = 0; i < 5000; ++i) recorder.event(i, "tick", std::to_string(i));
+  recorder.close({}, {});
+  const std::vector<Event> events = RunFile(folder.file("run.h5")).events();
+  ASSERT_EQ(events.size(), 5000u);
+  EXPECT_EQ(events[4321].text, "4321");
+}
+
+TEST(Recorder, PacedCountsTheEventsThatItLoses) {
+  const Folder folder;
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = true});
+  for (int i = 0; i < 100'000; ++i) recorder.event(i, "tick", "");
+  recorder.close({}, {});
+  const std::vector<Event> events = RunFile(folder.file("run.h5")).events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().kind, "events lost");
+  EXPECT_EQ(std::stoul(events.back().text) + events.size() - 1, 100'000u);
+}
+
+TEST(Recorder, CutsLongEventsBetweenCharacters) {
+  const Folder folder;
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {});
+  std::string umlauts;
+  for (int i = 0; i < 200; ++i) umlauts += "ä";
+  recorder.event(1, "a kind of more than thirty-one letters", umlauts);
+  recorder.close({}, {});
+  const Event e = RunFile(folder.file("run.h5")).events().at(0);
+  EXPECT_EQ(e.kind, "a kind of more than thirty-one ");
+  EXPECT_EQ(e.text, umlauts.substr(0, 222));
+}
+
+TEST(Recorder, HasNoFileOfThatNameBeforeARowIsSafe) {
+  const Folder folder;
+  write_content(folder.file("run.h5"), "the former run");
+  {
+    Recorder recorder(folder.file("run.h5"), schema(), header(), {});
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    EXPECT_EQ(content_of(folder.file("run.h5")), "the former run");
+  }
+  EXPECT_EQ(content_of(folder.file("run.h5")), "the former run");
+  EXPECT_EQ(folder.files(), 1u);  // and no leftover
+}
+
+TEST(Recorder, LeavesOneFileBehind) {
+  const Folder folder;
+  write_content(folder.file("run.h5.part"), "left by a killed run");
+  write_content(folder.file("run.h5.closing"), "left by a killed run");
+  write(folder.file("run.h5"), 10);
+  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_EQ(RunFile(folder.file("run.h5")).rows(), 10u);
+}
+
+TEST(Recorder, KeepsTheRowsOfARunThatEndsInAnException) {
+  const Folder folder;
+  try {
+    Recorder recorder(folder.file("run.h5"), schema(), header(), {});
+    record(recorder, 0, 77);
+    throw std::runtime_error("diverged");
+  } catch (const std::runtime_error&) {
+  }
+  const RunFile run(folder.file("run.h5"));
+  EXPECT_EQ(run.rows(), 77u);
+  EXPECT_EQ(first_wrong_row(run), 77u);
+  EXPECT_TRUE(run.summary().empty());
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(Recorder, RefusesAPlaceThatCannotBeWritten) {
+  const Folder folder;
+  write_content(folder.file("plain"), "a file, not a folder");
+  for (const std::string& path : {folder.file("plain/run.h5"), folder.file("no/such/folder/run.h5"), folder.file("")}) {
+    const Error e = error_of([&] { Recorder recorder(path, schema(), header(), {}); });
+    EXPECT_EQ(e.kind(), ErrorKind::io) << e.what();
+    EXPECT_NE(std::string(e.what()).find(path), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(Recorder, RefusesAFileThatAnotherRunIsWriting) {
+  const Folder folder;
+  Recorder first(folder.file("run.h5"), schema(), header(), {});
+  EXPECT_EQ(error_of([&] { Recorder second(folder.file("run.h5"), schema(), header(), {}); }).kind(), ErrorKind::io);
+  record(first, 0, 60);
+  EXPECT_EQ(error_of([&] { Recorder second(folder.file("run.h5"), schema(), header(), {}); }).kind(), ErrorKind::io);
+  first.close({}, {});
+  EXPECT_EQ(RunFile(folder.file("run.h5")).rows(), 60u);
+}
+
+/// No file of this process may grow beyond `bytes`, as on a full disk, until the end of the scope.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*signal_)(int);
+};
+
+// The frames that were safe before the disk was full are still there, and nothing else is.
+TEST(Recorder, TellsTheLoopThatTheDiskIsFull) {
+  const Folder folder;
+  ::testing::internal::CaptureStderr();
+  Error e(ErrorKind::check_failed, "");
+  {
+    const FileSizeLimit limit(1'000'000);
+    Recorder recorder(folder.file("run.h5"), schema(), header(), {});
+    e = error_of([&] { record(recorder, 0, 100'000); });
+    EXPECT_EQ(error_of([&] { static_cast<void>(recorder.begin_row()); }).kind(), ErrorKind::io);
+    EXPECT_EQ(error_of([&] { recorder.close({}, {}); }).kind(), ErrorKind::io);
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");  // HDF5's own complaints
+  EXPECT_EQ(e.kind(), ErrorKind::io);
+  EXPECT_NE(std::string(e.what()).find("File too large"), std::string::npos) << e.what();
+  EXPECT_EQ(folder.files(), 1u);
+  const RunFile run(folder.file("run.h5"));
+  EXPECT_GT(run.rows(), 500u);
+  EXPECT_EQ(first_wrong_row(run), run.rows());
+  EXPECT_FALSE(run.recovered());  // it could even be closed
+}
+
+// The same on a real file system of 2 MB, where this test may mount one.
+TEST(Recorder, KeepsWhatWasSafeOnADiskThatIsReallyFull) {
+  const Folder folder;
+  std::filesystem::create_directory(folder.file("disk"));
+  const std::string disk = folder.file("disk");
+  if (::mount("none", disk.c_str(), "tmpfs", 0, "size=2m") != 0) GTEST_SKIP() << "may not mount a small tmpfs here";
+  const Error e = error_of([&] {
+    Recorder recorder(disk + "/run.h5", schema(), header(), {});
+    record(recorder, 0, 1'000'000);
+  });
+  EXPECT_EQ(e.kind(), ErrorKind::io);
+  EXPECT_NE(std::string(e.what()).find("No space left"), std::string::npos) << e.what();
+  std::filesystem::copy_file(disk + "/run.h5", folder.file("run.h5"));
+  ::umount(disk.c_str());
+  const RunFile run(folder.file("run.h5"));
+  EXPECT_GT(run.rows(), 5000u);
+  EXPECT_EQ(first_wrong_row(run), run.rows());
+}
+
+TEST(Recorder, SaysAtOnceThatTheDiskWasFullFromTheStart) {
+  const Folder folder;
+  {
+    const FileSizeLimit limit(100);
+    EXPECT_EQ(error_of([&] { Recorder recorder(folder.file("run.h5"), schema(), header(), {}); }).kind(),
+              ErrorKind::io);
+  }
+  EXPECT_EQ(folder.files(), 0u);
+}
+
+// INTERFACES section 2: two runs of the same input differ in nothing.
+TEST(Recorder, WritesTheSameBytesForTheSameRun) {
+  const Folder folder;
+  RunHeader head = header();
+  head.files = {{"pin.lua", "ab", "addObject{}", true}};
+  write(folder.file("a.h5"), 50, head);
+  write(folder.file("b.h5"), 50, head);
+  EXPECT_EQ(content_of(folder.file("a.h5")).size(), content_of(folder.file("b.h5")).size());
+  EXPECT_TRUE(content_of(folder.file("a.h5")) == content_of(folder.file("b.h5")));
+}
+
+}  // namespace
+}  // namespace verisim
