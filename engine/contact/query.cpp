@@ -1,0 +1,113 @@
+#include "engine/contact/query.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "engine/base/error.hpp"
+#include "engine/contact/query_arithmetic.hpp"
+#include "engine/contact/query_simd.hpp"
+
+namespace verisim {
+namespace {
+
+/// Voxel steps (Chebyshev) from `cell`, which may lie outside the grid, to the nearest surface voxel: a lower bound if the
+/// cell is outside A, else 0.
+///
+/// In a brick with or next to one with surface voxels the layer itself is that number (at kBand + 1, a lower bound of it).
+/// If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And outside the grid by e cells, its
+/// border of one brick without surface adds 8.
+std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
+  std::int32_t clamped[3];
+  std::int32_t excess = 0;
+  for (int i = 0; i < 3; ++i) {
+    clamped[i] = clamp_cell(cell[i], f.cell_max[i]);
+    excess = std::max(excess, std::abs(cell[i] - clamped[i]));
+  }
+  if (excess > 0) return excess + kBrickSide;
+  const Layer clearance = f.brick_clearance[brick_of(f, clamped)];
+  if (clearance >= 2) return kBrickSide * (clearance - 1) + 1;
+  return std::max<std::int32_t>(f.layers[slot_of(f, clamped)], 0);
+}
+
+/// True only if every point of the cluster certainly has a layer > 0.
+///
+/// All points lie within `radius` of the centre, so their cells are at most `reach` = ceil(radius / voxel size) voxel steps
+/// from the centre's. Surface voxels are all that a triangle touches, so two neighbouring cells (by face, edge or corner) of
+/// which neither is one lie on the same side. If the centre's cell is outside and the nearest surface voxel more than
+/// `reach` steps away, no step on the way to any point's cell meets one: all are outside, layer > 0. A cluster deep inside
+/// is not culled: steps_to_surface is 0 there.
+bool surely_outside(const QueryFrame& f, const ClusterFrame& c, float radius, double per_metre) {
+  constexpr double kRounding = 0x1p-10;  // voxel; of local coordinates (float) and of the radius; far above both
+  const double reach = radius * per_metre * (1 + kRounding) + kRounding;
+  VERISIM_ASSERT(reach < 1 << 20);  // local coordinates stay within the range of kIntegerMagic
+  return steps_to_surface(f, c.base) - 1 >= reach;  // more steps than ceil(reach), as both sides of it are whole
+}
+
+void check(const Voxmap& a, const Pointshell& b, const ContactList& contacts) {
+  VERISIM_ASSERT(a.voxel_size > 0);
+  VERISIM_ASSERT(a.layers.size() < (std::size_t{1} << 32));  // slots have 32 bits
+  VERISIM_ASSERT(contacts.capacity() >= b.size());
+  VERISIM_ASSERT(b.size() == 0 || (!b.clusters.empty() && b.clusters.back().end == b.size()));
+}
+
+}  // namespace
+
+ContactList::ContactList(std::size_t capacity) {
+  for (auto* column : {&point, &slot}) column->resize(capacity + kPadding);
+  for (auto* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &fx, &fy, &fz}) column->resize(capacity + kPadding);
+}
+
+void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
+  check(a, b, contacts);
+  contacts.size = 0;
+  const QueryFrame frame = make_query_frame(a, b, X_AB);
+  const double per_metre = 1 / a.voxel_size;
+  std::array<ClusterFrame, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
+  std::size_t filled = 0;
+  for (const Pointshell::Cluster& cluster : b.clusters) {
+    batch[filled] = place(frame, cluster);
+    if (surely_outside(frame, batch[filled], cluster.radius, per_metre)) continue;
+    VERISIM_ASSERT(cluster.end - cluster.begin <= static_cast<std::uint32_t>(kBrickCells));
+    cost.points += cluster.end - cluster.begin;
+    if (++filled < batch.size()) continue;
+    cost.candidates += append_contacts(frame, b, batch, contacts);
+    filled = 0;
+  }
+  cost.candidates += append_contacts(frame, b, {batch.data(), filled}, contacts);
+  cost.clusters += b.clusters.size();
+}
+
+void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
+  check(a, b, contacts);
+  contacts.size = 0;
+  const QueryFrame f = make_query_frame(a, b, X_AB);
+  for (const Pointshell::Cluster& cluster : b.clusters) {
+    const ClusterFrame c = place(f, cluster);
+    for (std::uint32_t i = c.begin; i < c.end; ++i) {
+      const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);
+      if (p.layer > 0) continue;
+      ++cost.candidates;
+      float n[3];
+      for (int r = 0; r < 3; ++r) {
+        n[r] = f.rotation[3 * r] * b.nx[i] + f.rotation[3 * r + 1] * b.ny[i] + f.rotation[3 * r + 2] * b.nz[i];
+      }
+      const float depth = depth_of(f, p, n[0], n[1], n[2]);
+      if (!(depth > 0)) continue;
+      const std::uint32_t k = contacts.size++;
+      contacts.point[k] = i;
+      contacts.slot[k] = p.slot;
+      contacts.x[k] = (static_cast<float>(c.base[0]) + p.local[0]) * f.voxel_size;
+      contacts.y[k] = (static_cast<float>(c.base[1]) + p.local[1]) * f.voxel_size;
+      contacts.z[k] = (static_cast<float>(c.base[2]) + p.local[2]) * f.voxel_size;
+      contacts.nx[k] = n[0];
+      contacts.ny[k] = n[1];
+      contacts.nz[k] = n[2];
+      contacts.depth[k] = depth;
+    }
+  }
+  cost.clusters += b.clusters.size();
+  cost.points += b.size();
+}
+
+}  // namespace verisim
