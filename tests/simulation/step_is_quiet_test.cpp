@@ -26,17 +26,31 @@ Function* next_of(const char* name) {
 
 }  // namespace
 
-void* operator new(std::size_t size) {
+// glibc's own entry points: everything that allocates, operator new and shared libraries included, comes through these.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* p, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer stands there itself
+void* malloc(std::size_t size) {
   note(allocations);
-  void* p = std::malloc(size != 0 ? size : 1);
-  if (p == nullptr) throw std::bad_alloc();
-  return p;
+  return __libc_malloc(size);
 }
-void operator delete(void* p) noexcept {
-  std::free(p);
+void* calloc(std::size_t count, std::size_t size) {
+  note(allocations);
+  return __libc_calloc(count, size);
 }
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
+void* realloc(void* p, std::size_t size) {
+  note(allocations);
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  note(allocations);
+  return __libc_memalign(alignment, size);
+}
+#endif
 }
 
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) {
@@ -53,6 +67,8 @@ extern "C" int clock_gettime(clockid_t id, timespec* t) {
 
 namespace verisim {
 namespace {
+
+std::vector<int> kept;  // outlives its test, so that no compiler may leave the allocation out
 
 struct Quiet {
   std::uint64_t allocations, locks, clock_reads, frames, contacts;
@@ -98,9 +114,12 @@ TEST(StepIsQuiet, WhileBoxesFallOnEachOther) {
 
 // The alarm itself works.
 TEST(StepIsQuiet, NoticesAnAllocationALockAndAClock) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer stands where this test counts allocations";
+#endif
   allocations = locks = clock_reads = 0;
   counting = true;
-  delete new int(1);
+  std::vector<int>(1000).swap(kept);
   pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   pthread_mutex_lock(&mutex);
   pthread_mutex_unlock(&mutex);
