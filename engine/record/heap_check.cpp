@@ -68,8 +68,10 @@ bool is_whole(std::string_view collection) {
 }  // namespace
 
 void check_text_heaps(const std::string& path) {
-  const MappedFile file(path);
-  const std::string_view bytes = file.bytes();
+  check_text_heaps_of(MappedFile(path).bytes());
+}
+
+void check_text_heaps_of(std::string_view bytes) {
   for (std::size_t at = bytes.find(kSignature); at != std::string_view::npos; at = bytes.find(kSignature, at + 1)) {
     if (bytes.size() - at < kHeader) throw hdf5::Failure("a heap of texts is cut off");
     const auto size = number_at<std::uint64_t>(bytes, at + 8);

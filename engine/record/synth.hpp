@@ -1,0 +1,38 @@
+// Synthesized haptic traces: motions whose every sample is a formula of time, for scenes that no hand was recorded for
+// and for tests that need to know the answer. Pinned functions and named random streams: same parameters and seed, same
+// bits, everywhere.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/record/trace.hpp"
+
+namespace verisim {
+
+/// A parameter of a synthesizer. Units are SI.
+struct SynthParameter {
+  std::string name;
+  double value = 0;  ///< default
+  std::string units;
+  std::string description;
+};
+
+/// Names of all kinds: "sine" (sum of two sines per axis), "reach" (minimum jerk, point to point and back), "tremor"
+/// (physiological tremor around a point), "insertion" (down and up along an axis, again and again), "step" (a jump).
+[[nodiscard]] std::vector<std::string> synthesizers();
+
+/// The parameters of a kind with their defaults. Error(usage), with the nearest name, for an unknown kind.
+[[nodiscard]] std::vector<SynthParameter> synth_parameters(const std::string& kind);
+
+/// All kinds with their parameters, one line each, for --help.
+[[nodiscard]] std::string synthesizer_help();
+
+/// A haptic trace of that kind. Its `source` says kind, parameters and seed, so that it can be made again.
+/// Error(usage) for an unknown parameter (with the nearest name), one that is not finite, a rate or duration of 0.
+[[nodiscard]] Trace synthesize(const std::string& kind, const std::map<std::string, double>& parameters,
+                               std::uint64_t seed);
+
+}  // namespace verisim
