@@ -40,11 +40,11 @@ struct HandDescription {
   std::vector<HandWaypoint> path;
   bool repeat = false;              ///< after the last waypoint on to the first, until the run ends
   double mass = 0.15;               ///< kg, fingers and handle
-  double inertia = 1e-4;            ///< kg m^2
+  double inertia = 1e-3;            ///< kg m^2
   double stiffness = 400;           ///< N/m
   double damping = 15.5;            ///< N s/m (2 sqrt(k m))
   double angular_stiffness = 2;     ///< N m/rad
-  double angular_damping = 0.0283;  ///< N m s/rad
+  double angular_damping = 0.0894;  ///< N m s/rad (2 sqrt(k I))
   double lead = std::numeric_limits<double>::infinity();  ///< m; the target waits while it is further ahead of the hand
   double patience =
       std::numeric_limits<double>::infinity();  ///< s; after so long a wait back to the waypoint before, and again

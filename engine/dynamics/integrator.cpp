@@ -21,48 +21,40 @@ Wrench wrench_of(const Vector6d& column) {
 /// The motion of one step: u1 = (v1, omega*), with omega* the angular velocity that I0 and the new angular momentum
 /// give.
 struct Motion {
-  Vector6d before;
-  Vector6d during;
-  double numerical;  ///< kinetic energy that the step itself lost
+  Vector6d middle;  ///< (u0 + u1) / 2: along it, force times displacement is exactly the change of kinetic energy
+  Vector6d during;  ///< u1: along it the body moves
+  double turned;    ///< kinetic energy lost because I turns while the angular momentum stays
 };
 
 /// Moves the body along `during` for dt. Angular momentum is kept while the orientation, and so I_W, changes.
 Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   const Vector6d before = stacked(body.v_C, body.omega);
-  const Matrix3d I0 = body.inertia_W();
-  const Vector3d v1 = during.head<3>();
   const Vector3d omega_star = during.tail<3>();
-  const Vector3d L1 = I0 * omega_star;
-  body.v_C = v1;
-  body.p_WC += dt * v1;
+  const Vector3d L1 = body.inertia_W() * omega_star;
+  body.v_C = during.head<3>();
+  body.p_WC += dt * body.v_C;
   body.R_WB = (rotation_from_vector(dt * omega_star) * body.R_WB).normalized();
   body.omega = body.inertia_inverse_W() * L1;
-
-  const Vector3d dv = v1 - before.head<3>();
-  const Vector3d domega = omega_star - before.tail<3>();
-  // F dt . v1 = change of kinetic energy + m |dv|^2 / 2 (exact for velocity-first steps), likewise for rotation; and
-  // the rotation changes I at constant L.
-  const double turned = 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1);
-  return {before, during, 0.5 * body.mass * dv.squaredNorm() + 0.5 * domega.dot(I0 * domega) + turned};
+  return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
 }
 
-/// Works of the loads over the displacement dt * during, given the wrenches that were really applied.
+/// Works of the loads, given the wrenches that were really applied. `external` is constant: its potential is linear.
 StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion, const Wrench& spring,
                  const Wrench& damper, const Wrench& contact, double energy_before, double dt) {
   StepWork work;
-  const Vector6d moved = dt * motion.during;
+  const Vector6d half_way = dt * motion.middle;
   work.contact = contact;
-  work.external = stacked(loads.external).dot(moved);
-  work.contact_work = stacked(contact).dot(moved);
-  work.numerical = motion.numerical;
+  work.contact_work = stacked(contact).dot(half_way);
+  work.numerical = motion.turned + stacked(loads.external).dot(dt * motion.during - half_way);
   if (loads.coupling == nullptr) return work;
 
   const Vector6d target_moved = dt * stacked(loads.target.v_C, loads.target.omega);
   work.coupling = {spring.force + damper.force, spring.torque + damper.torque};
+  work.coupling_damper = damper;
   work.input = stacked(damper).dot(target_moved);
-  work.damper = stacked(damper).dot(target_moved - moved);
+  work.damper = stacked(damper).dot(target_moved - half_way);
   const double stored = coupling_energy(*loads.coupling, body, loads.target) - energy_before;
-  work.numerical -= stacked(spring).dot(moved) + stored;
+  work.numerical -= stacked(spring).dot(half_way) + stored;
   return work;
 }
 

@@ -34,8 +34,8 @@ struct Loads {
 /// What the loads did during the step [J, and the wrenches that were really applied].
 struct StepWork {
   Wrench coupling;          ///< on the body
+  Wrench coupling_damper;   ///< the damper's part of it
   Wrench contact;           ///< on the body
-  double external = 0;      ///< work on the body
   double contact_work = 0;  ///< work on the body
   double damper = 0;        ///< dissipated in the coupling's damper, relative to the target's motion
   double input = 0;         ///< put in by the hand through the damper; through the spring: see Ledger::add_jump

@@ -149,6 +149,21 @@ void Simulation::Implementation::respond() {
   }
 }
 
+/// What the hand feels: the reaction to the coupling, about the virtual handle. The damper of a heavy body is more than
+/// a hand at the end of a sampled loop can bear: b dt/m_hand, with the arm's part, has to stay below 1 (half of the
+/// bound in ORACLES section 2). The lightest hand with its handle is taken as 0.1 kg and 0.001 kg m^2; beyond that the
+/// damper, which is there for the body's sake, is rendered weaker. The spring is rendered in full.
+Wrench Simulation::Implementation::felt(const Body& body, const StepWork& work) const {
+  constexpr double kMass = 0.1;
+  constexpr double kInertia = 0.001;
+  const Vector3d arm = body.loads.target.p_WC - devices[body.held_by]->reading().handle.position;
+  const double linear = dt * body.coupling.damping * (1 / kMass + arm.squaredNorm() / kInertia);
+  const double angular = dt * body.coupling.angular_damping_B.trace() / kInertia;
+  const Vector3d force = work.coupling.force - (1 - std::min(1.0, 1 / linear)) * work.coupling_damper.force;
+  const Vector3d torque = work.coupling.torque - (1 - std::min(1.0, 1 / angular)) * work.coupling_damper.torque;
+  return {-force, -torque - arm.cross(force)};
+}
+
 void Simulation::Implementation::integrate() {
   for (Body& body : bodies) {
     body.contact_wrench = body.loads.contact;
@@ -162,24 +177,16 @@ void Simulation::Implementation::integrate() {
            "frame {}: the state of '{}' is not finite any more; lower the stiffness or the time step", frame,
            body.name);
     body.contact_wrench = work.contact;
-    if (body.held_by != kNone) held[body.held_by].on_hand = -work.coupling;
+    if (body.held_by != kNone) held[body.held_by].on_hand = felt(body, work);
     ledger.add(work);
   }
 }
 
-/// What the hand feels is the reaction to the coupling, taken about the virtual handle.
 void Simulation::Implementation::render() {
   for (std::size_t d = 0; d < devices.size(); ++d) {
-    Held& hand = held[d];
-    const Pose& handle = devices[d]->reading().handle;
-    if (hand.body == kNone) {
-      hand.on_hand = {};
-    } else {
-      const Vector3d arm = bodies[hand.body].loads.target.p_WC - handle.position;
-      hand.on_hand.torque += arm.cross(hand.on_hand.force);
-    }
-    devices[d]->render(hand.on_hand, dt);
-    hand.handle_before = handle;
+    if (held[d].body == kNone) held[d].on_hand = {};
+    devices[d]->render(held[d].on_hand, dt);
+    held[d].handle_before = devices[d]->reading().handle;
   }
 }
 

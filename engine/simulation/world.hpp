@@ -90,6 +90,7 @@ struct Simulation::Implementation {
   void query_contacts();
   void respond();
   void integrate();
+  [[nodiscard]] Wrench felt(const Body& body, const StepWork& work) const;
   void render();
   void take_stock();
 
