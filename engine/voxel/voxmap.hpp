@@ -21,8 +21,7 @@ namespace verisim {
 
 inline constexpr int kBrickShift = 3;
 inline constexpr int kBrickSide = 1 << kBrickShift;
-inline constexpr int kBrickCells =
-    kBrickSide * kBrickSide * kBrickSide;  // 512: also the cluster size limit of the pointshell
+inline constexpr int kBrickCells = 1 << (3 * kBrickShift);  ///< also the most points that a cluster of the shell has
 inline constexpr std::uint32_t kOutsideBlock = 0;
 inline constexpr std::uint32_t kInsideBlock = 1;
 inline constexpr int kBand = 6;  ///< layers are exact (Chebyshev voxel steps from the nearest surface voxel) up to here
@@ -34,17 +33,17 @@ using Layer = std::int8_t;
 /// Small identity of a set of b-rep entities (hash-consed, see features.hpp). 0: the empty set.
 using FeatureSetId = std::uint16_t;
 
+/// brick_clearance counts bricks (Chebyshev steps) to the nearest brick with a surface voxel: + outside, - inside, 0 has
+/// one; clamped to ±127.
 struct Voxmap {                            //  shape        unit  meaning
   Vector3d origin = Vector3d::Zero();      //               m     corner of cell (0,0,0) in body coordinates
   double voxel_size = 0;                   //               m
   Eigen::Vector3i bricks = {0, 0, 0};      //               -     number of bricks along x, y, z
   std::vector<std::uint32_t> brick_block;  //  (bz,by,bx)   -     block of each brick, x fastest
-  std::vector<Layer>
-      brick_clearance;        //  (bz,by,bx)   -     bricks (Chebyshev steps) to the nearest brick with
-                              //                     a surface voxel; + outside, - inside, 0 = has one; clamped to ±127
-  std::vector<Layer> layers;  //  (blocks,512) -     cell = x + 8 y + 64 z within the brick
+  std::vector<Layer> brick_clearance;      //  (bz,by,bx)   -     signed distance to the surface in bricks
+  std::vector<Layer> layers;               //  (blocks,512) -     cell = x + 8 y + 64 z within the brick
   std::vector<std::array<std::uint64_t, 8>> surface_mask;  // (blocks) - bit x + 8 y of word z: is a surface voxel
-  std::vector<std::uint32_t> first_surface;  //  (blocks)     -     number of the block's first surface voxel
+  std::vector<std::uint32_t> first_surface;                // (blocks) - number of the block's first surface voxel
   std::uint32_t surface_count = 0;
 
   /// Layer of the voxel that contains the body-coordinate point; outside the grid: +(kBand + 1). For tests and tools.
@@ -62,22 +61,19 @@ struct Voxmap {                            //  shape        unit  meaning
 
 /// One point per surface voxel: the voxel's centre with an inward normal. Sorted by brick (z, y, x), then by cell
 /// within it, so that point i is surface voxel i of the same body's voxmap and a cluster is a run of neighbours.
-struct Pointshell {            //  shape  unit  meaning
-  std::vector<float> x, y, z;  //  (n)    m     centre of the surface voxel relative to `reference`, body coordinates
-  std::vector<float> nx, ny,
-      nz;  //  (n)    1     unit inward normal: mean of the faces in the voxel, weighted by area in it
-  std::vector<std::uint32_t>
-      voxel;  //  (n)    -     surface voxel number of each point; empty: point i is voxel i (no thinning)
-  std::vector<FeatureSetId>
-      features;  //  (surface_count) - b-rep entities through each SURFACE VOXEL; empty: none known
+/// A normal is the mean of the faces in the voxel, weighted by their area in it (normals.hpp).
+struct Pointshell {                    //  shape  unit  meaning
+  std::vector<float> x, y, z;          //  (n)    m     voxel's centre relative to `reference`, body coordinates
+  std::vector<float> nx, ny, nz;       //  (n)    1     inward normal
+  std::vector<std::uint32_t> voxel;    //  (n)    -     surface voxel number of each point; empty: point i is voxel i
+  std::vector<FeatureSetId> features;  //  (surface_count) - b-rep entities through each SURFACE VOXEL; empty: unknown
   struct Cluster {
     std::uint32_t begin, end;  //  -            points [begin, end), at most 512
     Vector3f center;           //  m            of the bounding ball, relative to `reference`
     float radius;              //  m            covers every point (rounded up)
   };
   std::vector<Cluster> clusters;
-  Vector3d reference =
-      Vector3d::Zero();  //  m         body coordinates; keeps floats small for parts far from their origin
+  Vector3d reference = Vector3d::Zero();  // m  body coordinates; keeps floats small for parts far from their origin
   [[nodiscard]] std::size_t size() const { return x.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
 };

@@ -24,51 +24,53 @@ inline double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   return angle / (4 * std::numbers::pi);
 }
 
+/// Calls visit(cell) for the cells from low to high, x fastest.
+template <class Visit>
+void for_each_cell(const Eigen::Vector3i& low, const Eigen::Vector3i& high, Visit visit) {
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) visit(Eigen::Vector3i(x, y, z));
+    }
+  }
+}
+
+/// Is a voxel surface? Every triangle is asked, but for those whose bounding box is more than a voxel away.
+inline bool is_surface(const TriangleMesh& mesh, const Voxmap& map, const Eigen::Vector3i& cell) {
+  const Vector3d center = map.center_of(cell);
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
+    const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const bool near = ((a.cwiseMin(b).cwiseMin(c) - center).array() < map.voxel_size).all() &&
+                      ((center - a.cwiseMax(b).cwiseMax(c)).array() < map.voxel_size).all();
+    return near && triangle_touches_box(a, b, c, center, 0.5 * map.voxel_size);
+  });
+}
+
 /// Layers of every cell of the map's grid, x fastest. Only origin, voxel_size and bricks of the map are read.
 inline std::vector<int> layers(const TriangleMesh& mesh, const Voxmap& map) {
-  const Eigen::Vector3i n = kBrickSide * map.bricks;
+  const Eigen::Vector3i n = kBrickSide * map.bricks, last = n.array() - 1;
   const auto index = [&](const Eigen::Vector3i& c) {
     return static_cast<std::size_t>((c.z() * n.y() + c.y()) * n.x() + c.x());
   };
-  std::vector<int> distance(static_cast<std::size_t>(n.prod()), kBand + 1);
-  std::vector<Eigen::Vector3i> cells;
-  for (int z = 0; z < n.z(); ++z) {
-    for (int y = 0; y < n.y(); ++y) {
-      for (int x = 0; x < n.x(); ++x) cells.emplace_back(x, y, z);
-    }
-  }
-  for (const Eigen::Vector3i& cell : cells) {
-    const bool touched = std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
-      return triangle_touches_box(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], map.center_of(cell),
-                                  0.5 * map.voxel_size);
+  std::vector<int> result(static_cast<std::size_t>(n.prod()), kBand + 1);
+  for_each_cell(Eigen::Vector3i::Zero(), last, [&](const Eigen::Vector3i& cell) {
+    if (!is_surface(mesh, map, cell)) return;
+    for_each_cell((cell.array() - kBand).max(0), (cell.array() + kBand).min(last.array()), [&](const auto& other) {
+      int& distance = result[index(other)];
+      distance = std::min(distance, (other - cell).cwiseAbs().maxCoeff());
     });
-    if (!touched) continue;
-    const Eigen::Vector3i low = (cell.array() - kBand).max(0), high = (cell.array() + kBand).min(n.array() - 1);
-    for (int z = low.z(); z <= high.z(); ++z) {
-      for (int y = low.y(); y <= high.y(); ++y) {
-        for (int x = low.x(); x <= high.x(); ++x) {
-          int& known = distance[index({x, y, z})];
-          known = std::min(known, (Eigen::Vector3i(x, y, z) - cell).cwiseAbs().maxCoeff());
-        }
-      }
-    }
-  }
-  for (const Eigen::Vector3i& cell : cells) {
-    int& layer = distance[index(cell)];
+  });
+  for_each_cell(Eigen::Vector3i::Zero(), last, [&](const Eigen::Vector3i& cell) {
+    int& layer = result[index(cell)];
     if (layer > 0 && winding_number(mesh, map.center_of(cell)) > 0.5) layer = -layer;
-  }
-  return distance;
+  });
+  return result;
 }
 
 /// The same of a voxmap.
 inline std::vector<int> layers(const Voxmap& map) {
-  const Eigen::Vector3i n = kBrickSide * map.bricks;
   std::vector<int> result;
-  for (int z = 0; z < n.z(); ++z) {
-    for (int y = 0; y < n.y(); ++y) {
-      for (int x = 0; x < n.x(); ++x) result.push_back(map.layer({x, y, z}));
-    }
-  }
+  const Eigen::Vector3i last = (kBrickSide * map.bricks).array() - 1;
+  for_each_cell(Eigen::Vector3i::Zero(), last, [&](const auto& cell) { result.push_back(map.layer(cell)); });
   return result;
 }
 
