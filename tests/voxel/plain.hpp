@@ -66,6 +66,27 @@ inline std::vector<int> layers(const TriangleMesh& mesh, const Voxmap& map) {
   return result;
 }
 
+/// Number of surface voxels of the map's grid, without brick, hierarchy or mask: every triangle against every voxel of
+/// its bounding box. For grids of up to some 10^9 cells.
+inline std::size_t surface_count(const TriangleMesh& mesh, const Voxmap& map) {
+  const Eigen::Matrix<std::size_t, 3, 1> n = (kBrickSide * map.bricks).cast<std::size_t>();
+  std::vector<bool> is_set(n.prod());
+  std::size_t count = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Eigen::Vector3i low = map.cell_of(a.cwiseMin(b).cwiseMin(c)).array() - 1;
+    const Eigen::Vector3i high = map.cell_of(a.cwiseMax(b).cwiseMax(c)).array() + 1;
+    for_each_cell(low, high, [&](const Eigen::Vector3i& cell) {
+      if (!triangle_touches_box(a, b, c, map.center_of(cell), 0.5 * map.voxel_size)) return;
+      const Eigen::Matrix<std::size_t, 3, 1> at = cell.cast<std::size_t>();
+      const std::size_t index = (at.z() * n.y() + at.y()) * n.x() + at.x();
+      if (!is_set[index]) ++count;
+      is_set[index] = true;
+    });
+  }
+  return count;
+}
+
 /// The same of a voxmap.
 inline std::vector<int> layers(const Voxmap& map) {
   std::vector<int> result;
