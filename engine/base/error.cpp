@@ -36,6 +36,7 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2);  // further away is no misspelling
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);
+    if (distance == std::max(name.size(), candidate.size())) continue;  // no letter in common
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {
       best = candidate;
       best_distance = distance;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "engine/base/error.hpp"
@@ -50,8 +51,10 @@ constexpr Dtype dtype_of() {
     return Dtype::u16;
   else if constexpr (std::is_same_v<T, std::int8_t>)
     return Dtype::i8;
-  else
+  else {
+    static_assert(std::is_same_v<T, std::uint8_t>, "no Dtype stands for this type");
     return Dtype::u8;
+  }
 }
 
 struct NamedArray {
@@ -62,21 +65,34 @@ struct NamedArray {
   std::string units;               ///< "m", "1", …
   std::string description;         ///< one sentence
 
+  /// @pre the product of `shape` is the number of values
   template <typename T>
   static NamedArray from(std::string name, std::span<const T> values, std::vector<std::size_t> shape, std::string units,
                          std::string description) {
     NamedArray a{std::move(name), dtype_of<T>(), std::move(shape), {}, std::move(units), std::move(description)};
+    VERISIM_ASSERT(a.count() == values.size());
     a.bytes.resize(values.size_bytes());
     if (!values.empty()) std::memcpy(a.bytes.data(), values.data(), values.size_bytes());
     return a;
   }
 
-  /// The values as T. Throws Error(input) if the array holds another type.
+  /// Number of values that the shape promises; 1 for a scalar (no dimensions).
+  [[nodiscard]] std::size_t count() const {
+    std::size_t n = 1;
+    for (const std::size_t extent : shape) n *= extent;
+    return n;
+  }
+
+  /// The values as T. Throws Error(input) if the array holds another type or another number of values than its shape
+  /// promises.
   template <typename T>
   [[nodiscard]] std::vector<T> as() const {
     if (dtype != dtype_of<T>())
       fail(ErrorKind::input, "'{}' holds another number type than expected; the run file is damaged", name);
-    std::vector<T> values(bytes.size() / sizeof(T));
+    if (bytes.size() != count() * sizeof(T))
+      fail(ErrorKind::input, "'{}' holds {} bytes but its shape promises {}; the run file is damaged", name,
+           bytes.size(), count() * sizeof(T));
+    std::vector<T> values(count());
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;
   }

@@ -31,6 +31,7 @@ class Device {
   [[nodiscard]] virtual const std::string& name() const = 0;
   /// Brings the device to simulated time t [s] (frame * dt). Called once a frame, in order.
   virtual void sample(std::uint64_t frame, double t, double dt) = 0;
+  /// What sample() found; before the first one, where the device rests.
   [[nodiscard]] virtual const DeviceReading& reading() const = 0;
   /// The wrench that the hand shall feel, about the virtual handle [N, N m].
   virtual void render(const Wrench& wrench, double dt) = 0;

@@ -9,11 +9,12 @@ namespace {
 
 class ScaleDevice final : public ForwardingDevice {
  public:
-  ScaleDevice(std::shared_ptr<Device> device, double scale) : ForwardingDevice(std::move(device)), scale_(scale) {}
+  ScaleDevice(std::shared_ptr<Device> device, double scale) : ForwardingDevice(std::move(device)), scale_(scale) {
+    update();
+  }
   void sample(std::uint64_t frame, double t, double dt) override {
     ForwardingDevice::sample(frame, t, dt);
-    reading_ = ForwardingDevice::reading();
-    reading_.handle.position *= scale_;
+    update();
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
   void render(const Wrench& wrench, double dt) override {
@@ -22,6 +23,11 @@ class ScaleDevice final : public ForwardingDevice {
   [[nodiscard]] double travel() const override { return scale_ * ForwardingDevice::travel(); }
 
  private:
+  void update() {
+    reading_ = ForwardingDevice::reading();
+    reading_.handle.position *= scale_;
+  }
+
   double scale_;
   DeviceReading reading_;
 };
@@ -29,15 +35,21 @@ class ScaleDevice final : public ForwardingDevice {
 class TranslateDevice final : public ForwardingDevice {
  public:
   TranslateDevice(std::shared_ptr<Device> device, Vector3d translation)
-      : ForwardingDevice(std::move(device)), translation_(std::move(translation)) {}
+      : ForwardingDevice(std::move(device)), translation_(std::move(translation)) {
+    update();
+  }
   void sample(std::uint64_t frame, double t, double dt) override {
     ForwardingDevice::sample(frame, t, dt);
-    reading_ = ForwardingDevice::reading();
-    reading_.handle.position += translation_;
+    update();
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
 
  private:
+  void update() {
+    reading_ = ForwardingDevice::reading();
+    reading_.handle.position += translation_;
+  }
+
   Vector3d translation_;
   DeviceReading reading_;
 };

@@ -40,7 +40,8 @@ class Tremor {
   std::array<std::array<Wave, kSines>, 3> waves_{};
 };
 
-/// A seconds' worth of leg: at least the time its length takes at its speed, or its angle at one radian per second.
+/// Duration of a leg [s]: the time that its length takes at its speed or its angle at one radian per second, the
+/// longer.
 double leg_duration(const Pose& from, const HandWaypoint& to) {
   const double angle = vector_from_rotation(from.rotation.conjugate() * to.pose.rotation).norm();
   return std::max((to.pose.position - from.position).norm() / to.speed, angle / 1.0);
@@ -55,9 +56,11 @@ class HandDevice final : public Device {
         retries_(hand_.seed, hand_.name + " retries"),
         error_(hand_.error),
         angular_error_(hand_.angular_error) {
-    const Pose start = hand_.path.front().pose;
+    const Pose& start = hand_.path.front().pose;
     x_ = start.position + error_;
     q_ = (rotation_from_vector(angular_error_) * start.rotation).normalized();
+    start_ = x_;
+    reach_ = travel();
     reading_.raw = reading_.handle = {x_, q_};
   }
 
@@ -121,22 +124,34 @@ class HandDevice final : public Device {
 
   /// Back to the waypoint before, with the place misjudged anew.
   void retry() {
+    const double share_left = 1 - share_walked();  // the way back may have another speed
     std::swap(from_, goal_);
-    along_ = std::max(0.0, leg_duration(hand_.path[from_].pose, hand_.path[goal_]) - along_);
+    along_ = share_left * leg_duration(hand_.path[from_].pose, hand_.path[goal_]);
     if (!withdrawing_) {
-      const auto draw = [&] { return 2 * retries_.uniform(tries_++) - 1; };
-      error_ = hand_.error.cwiseProduct(Vector3d(draw(), draw(), draw()));
-      angular_error_ = hand_.angular_error.cwiseProduct(Vector3d(draw(), draw(), draw()));
+      error_ = hand_.error.cwiseProduct(draw_signed());
+      angular_error_ = hand_.angular_error.cwiseProduct(draw_signed());
     }
     withdrawing_ = !withdrawing_;
     waited_ = 0;
   }
 
+  /// Three numbers in [-1, 1), drawn one after the other: the order of arguments is the compiler's.
+  Vector3d draw_signed() {
+    Vector3d drawn;
+    for (double& d : drawn) d = 2 * retries_.uniform(tries_++) - 1;
+    return drawn;
+  }
+
+  /// How much of the leg is behind the target, in [0, 1].
+  [[nodiscard]] double share_walked() const {
+    const double duration = leg_duration(hand_.path[from_].pose, hand_.path[goal_]);
+    return duration > 0 ? std::min(1.0, along_ / duration) : 1.0;
+  }
+
   [[nodiscard]] Pose target() const {
     const Pose& a = hand_.path[from_].pose;
     if (from_ == goal_) return a;
-    const double duration = leg_duration(a, hand_.path[goal_]);
-    const double s = duration > 0 ? std::min(1.0, along_ / duration) : 1.0;
+    const double s = share_walked();
     const Pose& b = hand_.path[goal_].pose;
     return {a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s)};
   }
@@ -153,10 +168,21 @@ class HandDevice final : public Device {
     v_ = (h.mass * v_ + dt * (h.stiffness * (aim.position - x_) + felt_.force)) /
          (h.mass + dt * h.damping + dt * dt * h.stiffness);
     x_ += dt * v_;
+    keep_within_reach();
     const Vector3d e = vector_from_rotation(aim.rotation * q_.conjugate());
     w_ = (h.inertia * w_ + dt * (h.angular_stiffness * e + felt_.torque)) /
          (h.inertia + dt * h.angular_damping + dt * dt * h.angular_stiffness);
     q_ = (rotation_from_vector(dt * w_) * q_).normalized();
+  }
+
+  /// travel() is a promise: whatever pushes, the arm ends there. The outward velocity is lost.
+  void keep_within_reach() {
+    const Vector3d out = x_ - start_;
+    const double distance = out.norm();
+    if (!(distance > reach_)) return;
+    const Vector3d n = out / distance;
+    x_ = start_ + reach_ * n;
+    v_ -= std::max(0.0, v_.dot(n)) * n;
   }
 
   HandDescription hand_;
@@ -168,6 +194,8 @@ class HandDevice final : public Device {
   double along_ = 0, dwelling_ = 0, waited_ = 0;
   bool withdrawing_ = false;
   Vector3d x_, v_ = Vector3d::Zero(), w_ = Vector3d::Zero();
+  Vector3d start_;    ///< where x_ started
+  double reach_ = 0;  ///< m, travel(), computed once
   Quaterniond q_;
   DeviceReading reading_;
   Wrench felt_;
@@ -185,6 +213,7 @@ std::shared_ptr<Device> make_hand(HandDescription hand) {
   require(!hand.path.empty(), hand, "path has no waypoints; give at least one");
   for (const HandWaypoint& w : hand.path) {
     require(w.pose.position.allFinite() && w.pose.rotation.coeffs().allFinite(), hand, "a waypoint is not finite");
+    require(std::abs(w.pose.rotation.squaredNorm() - 1) < 1e-6, hand, "a waypoint's rotation is not a unit quaternion");
     require(positive(w.speed), hand, "a waypoint's speed must be finite and above 0 m/s");
     require(not_negative(w.dwell), hand, "a waypoint's dwell must be finite and not negative");
   }

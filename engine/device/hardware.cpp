@@ -40,7 +40,10 @@ class HardwareDevice final : public Device {
   }
   [[nodiscard]] const Wrench& rendered() const override { return rendered_; }
   [[nodiscard]] double duration() const override { return source_ ? source_->duration() : 0; }
-  [[nodiscard]] double travel() const override { return source_ ? source_->travel() : 0; }
+  [[nodiscard]] double travel() const override {
+    // Rounding moves the start and the end by up to half a step per axis, each.
+    return source_ ? source_->travel() + std::sqrt(3.0) * description_.resolution : 0;
+  }
   [[nodiscard]] bool driven() const override { return source_ != nullptr; }
   void set_source(std::shared_ptr<Device> source) { source_ = std::move(source); }
 
@@ -80,6 +83,14 @@ HardwareDescription virtuose_6d(const std::string& name) {
 }
 
 std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shared_ptr<Device> source) {
+  const HardwareDescription& d = description;
+  if (!std::isfinite(d.resolution) || d.resolution < 0)
+    fail(ErrorKind::input, "device '{}': resolution is {} m but must be finite and not negative", d.name, d.resolution);
+  if (!(d.force_max >= 0) || !(d.torque_max >= 0))
+    fail(ErrorKind::input, "device '{}': its limits of {} N and {} N m must not be negative", d.name, d.force_max,
+         d.torque_max);
+  if (!d.home.position.allFinite() || !d.home.rotation.coeffs().allFinite())
+    fail(ErrorKind::input, "device '{}': its home pose is not finite", d.name);
   return std::make_shared<HardwareDevice>(std::move(description), std::move(source));
 }
 

@@ -1,4 +1,4 @@
-// Models of haptic hardware: workspace, position resolution, force limits. Numbers: ORACLES section 4, data sheets.
+// Models of haptic hardware: position resolution, force limits. Numbers: ORACLES section 4, data sheets.
 #pragma once
 
 #include <limits>
@@ -22,13 +22,14 @@ struct HardwareDescription {
 [[nodiscard]] HardwareDescription phantom_omni(const std::string& name);
 [[nodiscard]] HardwareDescription virtuose_6d(const std::string& name);
 
-/// Hardware moved by `source`; null: nothing drives it.
+/// Hardware moved by `source`; null: nothing drives it. Error(input) for a resolution or a limit that is negative or
+/// not a number, or a home pose that is not finite.
 [[nodiscard]] std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shared_ptr<Device> source);
 
-/// Scales positions and velocities of `inner` by `scale` about the origin and forces down by it (section 4.3.1);
-/// rotations and torques stay.
+/// Scales positions (and so velocities) of `inner` by `scale` about the origin and forces down by it (section 4.3.1);
+/// rotations and torques stay. Error(input) unless `scale` is finite and above 0.
 [[nodiscard]] std::shared_ptr<Device> make_scale(std::shared_ptr<Device> inner, double scale);
-/// Moves handle positions by `translation`.
+/// Moves handle positions by `translation`. Error(input) unless it is finite.
 [[nodiscard]] std::shared_ptr<Device> make_translate(std::shared_ptr<Device> inner, const Vector3d& translation);
 /// Drives a hardware device made without a source. Error(input) if `device` is none or is driven already.
 void drive(Device& device, std::shared_ptr<Device> source);

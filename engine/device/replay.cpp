@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/error.hpp"
 #include "engine/device/sources.hpp"
 
 namespace verisim {
 namespace {
+
+/// A sample this near counts as reached [s]: frame * dt and a time read from a file may differ in the last bit, and a
+/// button must not come a frame late for it.
+constexpr double kSimultaneous = 1e-9;
 
 class ReplayDevice final : public Device {
  public:
@@ -18,12 +23,13 @@ class ReplayDevice final : public Device {
 
   void sample(std::uint64_t, double t, double) override {
     const auto& times = samples_.t;
-    while (next_ < times.size() && times[next_] <= t) ++next_;
+    while (next_ < times.size() && times[next_] <= t + kSimultaneous) ++next_;
     const std::size_t before = next_ == 0 ? 0 : next_ - 1;
-    if (next_ == 0 || next_ == times.size()) {
+    const double since = t - times[before];
+    if (since < kSimultaneous || next_ == times.size()) {
       reading_.handle = samples_.pose[before];
     } else {
-      const double s = (t - times[before]) / (times[next_] - times[before]);
+      const double s = since / (times[next_] - times[before]);
       const Pose& a = samples_.pose[before];
       const Pose& b = samples_.pose[next_];
       reading_.handle = {a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s)};
@@ -52,6 +58,14 @@ class ReplayDevice final : public Device {
 std::shared_ptr<Device> make_replay(std::string name, HapticSamples samples) {
   if (samples.t.empty()) fail(ErrorKind::input, "device '{}': its trace has no samples", name);
   VERISIM_ASSERT(samples.pose.size() == samples.t.size());
+  for (std::size_t i = 0; i < samples.t.size(); ++i) {
+    const Pose& pose = samples.pose[i];
+    if (!std::isfinite(samples.t[i]) || (i > 0 && samples.t[i] <= samples.t[i - 1]))
+      fail(ErrorKind::input, "device '{}': the times of its trace do not grow at sample {}", name, i);
+    if (!pose.position.allFinite() || !(std::abs(pose.rotation.squaredNorm() - 1) < 1e-6))
+      fail(ErrorKind::input, "device '{}': sample {} of its trace is not a finite pose with a unit quaternion", name,
+           i);
+  }
   VERISIM_ASSERT(samples.button.empty() || samples.button.size() == samples.t.size());
   return std::make_shared<ReplayDevice>(std::move(name), std::move(samples));
 }

@@ -13,14 +13,16 @@
 namespace verisim {
 
 /// Samples of a haptic trace. Brought to the simulation's step by stated rules: positions linear, rotations slerp,
-/// buttons held; before the first and after the last sample the nearest is held. Sample times begin at 0.
+/// buttons held; before the first and after the last sample the nearest is held. A frame within a nanosecond of a
+/// sample gets that sample exactly.
 struct HapticSamples {               //  shape  unit
   std::vector<double> t;             //  (n)    s     strictly growing
   std::vector<Pose> pose;            //  (n)    m
   std::vector<std::uint8_t> button;  //  (n) or empty: held throughout
 };
 
-/// Devices.Replay{ trace= }.
+/// Devices.Replay{ trace= }. Error(input) for no samples, times that do not grow, poses that are not finite or not
+/// unit.
 [[nodiscard]] std::shared_ptr<Device> make_replay(std::string name, HapticSamples samples);
 
 /// One leg of an operator's target path.
@@ -54,6 +56,8 @@ struct HandDescription {
   Vector3d angular_error = Vector3d::Zero();    ///< rad, rotation vector
   std::uint64_t seed = 1;
 };
+/// Error(input) for a path without waypoints and for values that are not finite, negative or, where the model divides
+/// by them, zero. Its duration() is that of an operator whom nothing holds up; it never gets further than travel().
 [[nodiscard]] std::shared_ptr<Device> make_hand(HandDescription description);
 
 }  // namespace verisim

@@ -22,6 +22,11 @@ bool RigidBody::is_finite() const {
   return p_WC.allFinite() && R_WB.coeffs().allFinite() && v_C.allFinite() && omega.allFinite();
 }
 
+namespace {
+/// Smallest principal inertia over the largest; rounding of a needle's inertia may also make it slightly negative.
+constexpr double kInertiaRatioMin = 1e-6;
+}  // namespace
+
 RigidBody make_body(const std::string& name, double volume, const Vector3d& centroid,
                     const Matrix3d& inertia_per_density, double density) {
   if (!std::isfinite(density) || density <= 0)
@@ -35,12 +40,16 @@ RigidBody make_body(const std::string& name, double volume, const Vector3d& cent
   // Eigenvalues by QR iteration: square roots and products only, so the same bits everywhere.
   const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(density * inertia_per_density);
   const double largest = principal.eigenvalues().maxCoeff();
-  if (!(largest > 0))
+  const double smallest = principal.eigenvalues().minCoeff();
+  if (!(largest > 0) || smallest < -kInertiaRatioMin * largest)
     fail(ErrorKind::input, "'{}': its inertia is not positive; a body needs a closed, outward oriented shape", name);
-  const Vector3d values = principal.eigenvalues().cwiseMax(1e-6 * largest);
+  const Vector3d values = principal.eigenvalues().cwiseMax(kInertiaRatioMin * largest);
   const Matrix3d& axes = principal.eigenvectors();
   body.inertia_B = axes * values.asDiagonal() * axes.transpose();
   body.inertia_inverse_B = axes * values.cwiseInverse().asDiagonal() * axes.transpose();
+  if (!body.inertia_B.allFinite() || !body.inertia_inverse_B.allFinite())
+    fail(ErrorKind::input, "'{}': its inertia of {} kg m^2 is beyond double precision; check the model's scale", name,
+         largest);
   return body;
 }
 

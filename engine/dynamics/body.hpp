@@ -41,8 +41,8 @@ struct RigidBody {
 };
 
 /// A body of the given volume properties and density. The inertia's smallest principal value is raised to 1e-6 of the
-/// largest, so that a needle can still be integrated. Error(input) naming `name` if mass or inertia are not finite and
-/// positive.
+/// largest, so that a needle can still be integrated. Error(input) naming `name` if density, mass, centroid or inertia
+/// are not finite, or mass or a principal inertia are not positive (to 1e-6 of the largest).
 [[nodiscard]] RigidBody make_body(const std::string& name, double volume, const Vector3d& centroid,
                                   const Matrix3d& inertia_per_density, double density);
 

@@ -6,15 +6,6 @@
 namespace verisim {
 namespace {
 
-/// Shortens spring and damper together so that their sum is no longer than `limit`.
-bool saturate(Vector3d& spring, Vector3d& damper, double limit) {
-  const double length = (spring + damper).norm();
-  if (!(length > limit)) return false;
-  spring *= limit / length;
-  damper *= limit / length;
-  return true;
-}
-
 double share_of(double x) {
   return x * x + 4 * x;
 }
@@ -33,8 +24,6 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
   c.share = std::max(share_of(dt * std::sqrt(c.stiffness / body.mass)),
                      share_of(dt * std::sqrt(c.angular_stiffness / inertia_min)));
-  c.force_max = limits.force_max;
-  c.torque_max = limits.torque_max;
   return c;
 }
 
@@ -46,8 +35,6 @@ CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body, co
   f.spring = {coupling.stiffness * f.d, coupling.angular_stiffness * f.e};
   f.damper = {coupling.damping * (target.v_C - body.v_C),
               R * (coupling.angular_damping_B * (R.transpose() * (target.omega - body.omega)))};
-  f.force_saturated = saturate(f.spring.force, f.damper.force, coupling.force_max);
-  f.torque_saturated = saturate(f.spring.torque, f.damper.torque, coupling.torque_max);
   return f;
 }
 

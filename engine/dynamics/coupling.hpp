@@ -13,8 +13,6 @@
 // contact: k <= (sqrt(6) - 2)^2 m/dt^2 = 0.202 m/dt^2, and the same for kappa with the smallest principal inertia.
 #pragma once
 
-#include <limits>
-
 #include "engine/base/pose.hpp"
 #include "engine/dynamics/body.hpp"
 
@@ -23,10 +21,8 @@ namespace verisim {
 inline constexpr double kCouplingShare = 2;
 
 struct CouplingLimits {
-  double stiffness_max = 300;                                   ///< N/m (maxStiffness)
-  double angular_stiffness_max = 0.1;                           ///< N m/rad (maxAngularStiffness)
-  double force_max = std::numeric_limits<double>::infinity();   ///< N; a longer force is shortened to it
-  double torque_max = std::numeric_limits<double>::infinity();  ///< N m
+  double stiffness_max = 300;          ///< N/m (maxStiffness)
+  double angular_stiffness_max = 0.1;  ///< N m/rad (maxAngularStiffness)
 };
 
 /// Constants of one coupling: of a body, a step and limits.
@@ -36,8 +32,6 @@ struct Coupling {
   double angular_stiffness = 0;                   ///< kappa [N m/rad]
   Matrix3d angular_damping_B = Matrix3d::Zero();  ///< B in body axes [N m s/rad]
   double share = 0;  ///< of the stability budget of 4, at most kCouplingShare when `stabilized`
-  double force_max = 0;
-  double torque_max = 0;
 };
 
 /// `stabilize`: apply the stability rule (explicit forces); a linearly implicit integrator needs none.
@@ -57,7 +51,6 @@ struct CouplingForce {
   Vector3d e;     ///< rad
   Wrench spring;  ///< on the body about its centre of mass
   Wrench damper;
-  bool force_saturated = false, torque_saturated = false;
   [[nodiscard]] Wrench total() const { return {spring.force + damper.force, spring.torque + damper.torque}; }
 };
 [[nodiscard]] CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body,

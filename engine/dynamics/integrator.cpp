@@ -78,20 +78,16 @@ StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
 
 namespace {
 
-/// Stiffness and damping of the coupling at this orientation; a saturated half is constant and has neither.
+/// Stiffness and damping of the coupling at this orientation.
 void coupling_matrices(const RigidBody& body, const Loads& loads, Matrix6d& K, Matrix6d& D) {
   K.setZero();
   D.setZero();
   if (loads.coupling == nullptr) return;
-  if (!loads.coupling_at_start.force_saturated) {
-    K.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->stiffness);
-    D.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->damping);
-  }
-  if (!loads.coupling_at_start.torque_saturated) {
-    const Matrix3d R = body.R_WB.toRotationMatrix();
-    K.bottomRightCorner<3, 3>().diagonal().setConstant(loads.coupling->angular_stiffness);
-    D.bottomRightCorner<3, 3>() = R * loads.coupling->angular_damping_B * R.transpose();
-  }
+  const Matrix3d R = body.R_WB.toRotationMatrix();
+  K.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->stiffness);
+  D.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->damping);
+  K.bottomRightCorner<3, 3>().diagonal().setConstant(loads.coupling->angular_stiffness);
+  D.bottomRightCorner<3, 3>() = R * loads.coupling->angular_damping_B * R.transpose();
 }
 
 }  // namespace
@@ -120,13 +116,16 @@ StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
     }
     return Vector6d(A.llt().solve(rhs));
   };
-  Vector6d u1 = solve(true);
+  const bool touching = !loads.contact_stiffness.isZero(0) || !loads.contact_damping.isZero(0);
+  Vector6d u1 = solve(touching);
   const auto contact_at_end = [&](const Vector6d& u) {
     return Vector6d(contact0 + dt * (loads.contact_drift - loads.contact_stiffness * u) -
                     loads.contact_damping * (u - u0));
   };
   Vector6d contact1 = contact_at_end(u1);
-  if (contact1.dot(contact0) < 0) {  // a contact pushes; one that would pull by the end of the step has let go
+  // A contact pushes; one that would pull by the end of the step has let go. M^-1 weighs forces against torques, so
+  // that the answer does not depend on the unit of length.
+  if (touching && contact1.dot(body.inverse_mass_matrix() * contact0) <= 0) {
     u1 = solve(false);
     contact1.setZero();
   }
