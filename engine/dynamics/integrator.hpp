@@ -5,10 +5,10 @@
 //
 // implicit (linearly): spring, damper and contact are taken at the end of the step, linearised once:
 //   (M + dt D + dt^2 K) u1 = M u0 + dt (f(x0, u0) + D u0),   u = (v, omega)
-// with K, D of coupling and contact. Stable for any stiffness (backward Euler); it damps. One 6 x 6 Cholesky solve, a
-// second one in a step in which contact lets go. The coupling's target stands still where the handle was sampled.
-// A contact only pushes: if its wrench at the end of the step would point against the one at the start, or there was
-// none at the start, the step is taken without it.
+// with K, D of coupling and contact. Stable for any stiffness (backward Euler) that double precision carries, dt^2 K up
+// to about 1e13 M; it damps. One 6 x 6 Cholesky solve, a second one in a step in which contact lets go. The coupling's
+// target stands still where the handle was sampled. A contact only pushes: if its wrench at the end of the step would
+// point against the one at the start, or there was none at the start, the step is taken without it.
 //
 // Rotation keeps angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then omega = I1^-1 L1.
 // Spin energy stays below |L|^2 / (2 I_min) whatever the speed: a fast needle cannot blow up.
