@@ -150,7 +150,8 @@ class Exchange {
   const std::string how = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
                                               : fmt::format("exit code {}", WEXITSTATUS(status));
   fail(ErrorKind::input,
-       "{}: the CAD kernel crashed while reading ({}); the file is damaged or beyond it; open it in a CAD program and "
+       "{}: the CAD kernel or mesh reader crashed while reading ({}); the file is damaged or beyond it; open it in a "
+       "CAD program and "
        "export "
        "it again",
        subject, how);
@@ -164,7 +165,8 @@ Message ask_cad(const Message& request, const std::string& subject, double time_
   const std::optional<std::string> answer = Exchange(process, bytes).run(time_limit_s);
   if (!answer) {
     fail(ErrorKind::input,
-         "{}: the CAD kernel did not finish within {} s and was stopped; the file is damaged or beyond it; simplify it "
+         "{}: the CAD kernel or mesh reader did not finish within {} s and was stopped; the file is damaged or beyond "
+         "it; simplify it "
          "or "
          "export it again",
          subject, time_limit_s);

@@ -1,7 +1,6 @@
 #include "engine/geometry/loader.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -10,7 +9,6 @@
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/cad_client.hpp"
-#include "engine/geometry/mesh_file.hpp"
 #include "engine/geometry/model_format.hpp"
 #include "engine/geometry/write_file.hpp"
 
@@ -29,6 +27,18 @@ Family family_of(const std::string& path) {
   fail(ErrorKind::input,
        "{}: models ending in '.{}' cannot be read; give .step, .stp, .brep, .stl, .obj, .ply, .glb or .gltf", path,
        extension);
+}
+
+const char* operation_of(Family family) {
+  switch (family) {
+    case Family::step:
+      return "step";
+    case Family::brep:
+      return "brep";
+    case Family::mesh:
+      return "mesh";
+  }
+  return "";
 }
 
 void check_options(const std::string& path, const LoadOptions& options) {
@@ -89,60 +99,6 @@ void note_faults(const MeshReport& report, std::vector<std::string>& notes) {
   }
 }
 
-/// Repairs the mesh, fills in what follows from it and says what stays wrong.
-Part part_from_mesh(MeshObject object, const std::string& path) {
-  Part part;
-  part.name = std::move(object.name);
-  part.color = object.color;
-  part.mesh = std::move(object.mesh);
-  repair(part.mesh, part.notes);
-  if (part.mesh.triangles.empty()) {
-    fail(ErrorKind::input, "{}: all triangles of '{}' have zero area; check its scale and export it again", path,
-         part.name);
-  }
-  const MeshReport report = examine(part.mesh, /*thorough=*/true);
-  note_faults(report, part.notes);
-  part.watertight = report.watertight() && report.self_intersections == 0;
-  part.mass = mass_properties_of(part.mesh);
-  part.area = area_of(part.mesh);
-  return part;
-}
-
-MeshObject merged(std::vector<MeshObject> objects, const std::string& name) {
-  MeshObject all = std::move(objects.front());
-  all.name = name;
-  for (auto object = objects.begin() + 1; object != objects.end(); ++object) {
-    const auto first = static_cast<std::uint32_t>(all.mesh.vertices.size());
-    all.mesh.vertices.insert(all.mesh.vertices.end(), object->mesh.vertices.begin(), object->mesh.vertices.end());
-    for (const auto& [i, j, k] : object->mesh.triangles)
-      all.mesh.triangles.push_back({first + i, first + j, first + k});
-  }
-  return all;
-}
-
-bool is_closed_by_itself(const MeshObject& object) {
-  TriangleMesh mesh = object.mesh;
-  std::vector<std::string> ignored;
-  return repair(mesh, ignored).watertight() && !mesh.triangles.empty();
-}
-
-/// Named objects are parts of their own if each of them bounds a solid. Many programs name the pieces of one surface
-/// instead (its materials, its smoothing groups): together they are one part.
-std::vector<Part> load_meshes(const std::string& path, const std::string& content, double scale) {
-  std::vector<MeshObject> objects = read_mesh_file(path, content, scale);
-  const std::string stem = std::filesystem::path(path).stem().string();
-  const bool apart = objects.size() > 1 && std::all_of(objects.begin(), objects.end(), [](const MeshObject& object) {
-                       return !object.name.empty() && is_closed_by_itself(object);
-                     });
-  std::vector<Part> parts;
-  if (!apart) {
-    parts.push_back(part_from_mesh(merged(std::move(objects), stem), path));
-    return parts;
-  }
-  for (MeshObject& object : objects) parts.push_back(part_from_mesh(std::move(object), path));
-  return parts;
-}
-
 std::vector<NamedArray> common_request(const char* operation, const std::string& path, const LoadOptions& options) {
   return {text_table("operation", operation), text_table("path", path),
           number_table("scale", options.scale == 0 ? 1 : options.scale), number_table("deflection", options.deflection),
@@ -159,6 +115,57 @@ std::vector<Part> parts_from(const Message& answer) {
     part.watertight = report.watertight() && !part.mesh.triangles.empty();
     parts.push_back(std::move(part));
   }
+  return parts;
+}
+
+/// Repairs the mesh, fills in what follows from it and says what stays wrong.
+Part finished_mesh(Part part, const std::string& path) {
+  repair(part.mesh, part.notes);
+  if (part.mesh.triangles.empty()) {
+    fail(ErrorKind::input, "{}: all triangles of '{}' have zero area; check its scale and export it again", path,
+         part.name);
+  }
+  const MeshReport report = examine(part.mesh, /*thorough=*/true);
+  note_faults(report, part.notes);
+  part.watertight = report.watertight() && report.self_intersections == 0;
+  part.mass = mass_properties_of(part.mesh);
+  part.area = area_of(part.mesh);
+  return part;
+}
+
+Part merged(std::vector<Part> objects, const std::string& name) {
+  Part all = std::move(objects.front());
+  all.name = name;
+  for (auto object = objects.begin() + 1; object != objects.end(); ++object) {
+    const auto first = static_cast<std::uint32_t>(all.mesh.vertices.size());
+    all.mesh.vertices.insert(all.mesh.vertices.end(), object->mesh.vertices.begin(), object->mesh.vertices.end());
+    for (const auto& [i, j, k] : object->mesh.triangles)
+      all.mesh.triangles.push_back({first + i, first + j, first + k});
+  }
+  return all;
+}
+
+bool is_closed_by_itself(const Part& object) {
+  TriangleMesh mesh = object.mesh;
+  std::vector<std::string> ignored;
+  return repair(mesh, ignored).watertight() && !mesh.triangles.empty();
+}
+
+/// Named objects are parts of their own if each of them bounds a solid. Many programs name the pieces of one surface
+/// instead (its materials, its smoothing groups): together they are one part.
+std::vector<Part> finished_meshes(const Message& answer, const std::string& path) {
+  std::vector<Part> objects;
+  for (const Group& group : answer) objects.push_back(from_tables(group.name, group.tables));
+  const std::string stem = std::filesystem::path(path).stem().string();
+  const bool apart = objects.size() > 1 && std::all_of(objects.begin(), objects.end(), [](const Part& object) {
+                       return !object.name.empty() && is_closed_by_itself(object);
+                     });
+  std::vector<Part> parts;
+  if (!apart) {
+    parts.push_back(finished_mesh(merged(std::move(objects), stem), path));
+    return parts;
+  }
+  for (Part& object : objects) parts.push_back(finished_mesh(std::move(object), path));
   return parts;
 }
 
@@ -180,27 +187,15 @@ void make_names_unique(std::vector<Part>& parts, const std::string& nameless) {
 
 }  // namespace
 
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
-
 std::vector<Part> load_model(const std::string& path, const std::string& content, const LoadOptions& options) {
   const Family family = family_of(path);
   check_options(path, options);
   if (content.empty()) fail(ErrorKind::input, "{}: the file is empty; copy or export it again", path);
-  std::vector<Part> parts;
-  if (family == Family::mesh) {
-    parts = load_meshes(path, content, options.scale == 0 ? 1 : options.scale);
-  } else {
-    check_cad_content(path, content, family);
-    std::vector<NamedArray> request = common_request(family == Family::step ? "step" : "brep", path, options);
-    request.push_back(text_table("content", content));
-    parts = parts_from(ask_cad({{"request", std::move(request)}}, path));
-  }
+  if (family != Family::mesh) check_cad_content(path, content, family);
+  std::vector<NamedArray> request = common_request(operation_of(family), path, options);
+  request.push_back(text_table("content", content));
+  const Message answer = ask_cad({{"request", std::move(request)}}, path);
+  std::vector<Part> parts = family == Family::mesh ? finished_meshes(answer, path) : parts_from(answer);
   make_names_unique(parts, std::filesystem::path(path).stem().string());
   return parts;
 }

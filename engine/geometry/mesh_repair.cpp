@@ -1,8 +1,8 @@
 // repair(): each step changes one thing and says so. The steps keep face_of_triangle in step with the triangles.
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
@@ -60,14 +60,16 @@ std::size_t drop_repeated_corners(TriangleMesh& mesh) {
   return drop_triangles(mesh, drop);
 }
 
+/// Of triangles on the same three corners the first stays.
 std::size_t drop_duplicates(TriangleMesh& mesh) {
-  std::vector<bool> drop(mesh.triangles.size());
-  std::set<std::array<std::uint32_t, 3>> seen;
-  for (std::size_t t = 0; t < drop.size(); ++t) {
-    std::array<std::uint32_t, 3> sorted = mesh.triangles[t];
-    std::sort(sorted.begin(), sorted.end());
-    drop[t] = !seen.insert(sorted).second;
+  std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> sorted;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    sorted.emplace_back(mesh.triangles[t], t);
+    std::sort(sorted.back().first.begin(), sorted.back().first.end());
   }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> drop(mesh.triangles.size());
+  for (std::size_t i = 1; i < sorted.size(); ++i) drop[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
   return drop_triangles(mesh, drop);
 }
 

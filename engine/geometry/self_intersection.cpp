@@ -34,8 +34,8 @@ class Crossings {
       std::iter_swap(match, b.begin() + shared);
       ++shared;
     }
-    if (shared == 3) return false;
-    if (shared == 2) return folded_flat(a, b);
+    if (shared >= 2) return false;  // on a common edge they cross only if they lie in one plane
+    if (in_one_plane(a, b)) return false;
     if (shared == 1) {
       return CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(b[1]), point(b[2]))) ||
              CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(a[1]), point(a[2])));
@@ -44,10 +44,10 @@ class Crossings {
   }
 
  private:
-  /// Two triangles on the edge a[0] a[1] overlap only if they lie in one plane on the same side of it.
-  [[nodiscard]] bool folded_flat(const Triangle& a, const Triangle& b) const {
-    return CGAL::coplanar(point(a[0]), point(a[1]), point(a[2]), point(b[2])) &&
-           CGAL::coplanar_orientation(point(a[0]), point(a[1]), point(a[2]), point(b[2])) == CGAL::POSITIVE;
+  [[nodiscard]] bool in_one_plane(const Triangle& a, const Triangle& b) const {
+    return std::all_of(b.begin(), b.end(), [&](std::uint32_t corner) {
+      return CGAL::coplanar(point(a[0]), point(a[1]), point(a[2]), point(corner));
+    });
   }
   [[nodiscard]] Kernel::Point_3 point(std::uint32_t i) const {
     const Vector3d& p = mesh_.vertices[i];
@@ -80,7 +80,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
   std::vector<Box> boxes = boxes_of(mesh);
   // The sweep visits pairs in an order of its own: the count and the smallest pair do not depend on it.
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-    const auto [s, t] = std::minmax(a.info(), b.info());
+    const auto [s, t] = std::minmax({a.info(), b.info()});  // by value: info() returns one
     if (!crossings.cross(mesh.triangles[s], mesh.triangles[t])) return;
     ++found.pairs;
     first = std::min(first, {s, t});

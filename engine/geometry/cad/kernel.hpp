@@ -1,5 +1,5 @@
-// What the CAD program can do, without a type of the kernel in it: main.cpp calls these, and only the files behind them
-// include OpenCASCADE. All lengths [m]. Not thread-safe, like the kernel.
+// What the CAD program can do, without a type of its libraries in it: main.cpp calls these, and only the files behind
+// them include OpenCASCADE or assimp. All lengths [m]. Not thread-safe, like the kernel.
 //
 // Errors: Error(input) with `path` in front; the kernel's own exceptions pass (see describe_exception).
 #pragma once
@@ -15,7 +15,7 @@ namespace verisim::cad {
 
 struct Options {
   std::string path;               ///< for messages
-  double scale = 1;               ///< multiplies what the file says
+  double scale = 1;               ///< multiplies what a CAD file says; metres per unit of a mesh file
   double deflection = 0;          ///< m; 0: 1/2000 of each part's diagonal
   double angular_deflection = 0;  ///< rad
 };
@@ -23,6 +23,10 @@ struct Options {
 /// Every solid of the file in its order. `content_path` names a readable copy of its bytes.
 [[nodiscard]] std::vector<Part> read_step(const std::string& content_path, const Options& options);
 [[nodiscard]] std::vector<Part> read_brep(const std::string& content_path, const Options& options);
+
+/// The named objects of an STL, OBJ, PLY or glTF file (options.path tells which), placed as its nodes say: triangles,
+/// name and colour alone. Polygons are cut into triangles; lines and points are left out; corners are not shared.
+[[nodiscard]] std::vector<Part> read_mesh(const std::string& content, const Options& options);
 
 [[nodiscard]] Part build(const Solid& solid, const Options& options);
 

@@ -1,8 +1,8 @@
-// verisim-cad: the only program that links the CAD kernel. verisim starts it for one request, so that a crash of the
-// kernel (it has some) ends this process and not a simulation.
+// verisim-cad: the only program that links the CAD kernel and the readers of mesh files. verisim starts it for one
+// request, so that a crash of theirs (each has some) ends this process and not a simulation.
 //
 // stdin: a message (engine/geometry/message.hpp) with one group "request", whose "operation" is
-//   step, brep   content, path, scale, deflection, angular_deflection   -> one group per part
+//   step, brep, mesh   content, path, scale, deflection, angular_deflection   -> one group per part
 //   build        the solid's tables, path, deflection, angular_deflection -> one group
 //   write_step   further groups, one solid each, named as in the file   -> a group "file" with its content
 //   crash, hang  for the tests of what happens then
@@ -92,6 +92,7 @@ Message serve(const Message& message, std::string& path) {
   const cad::Options options{path, number_of(request, "scale"), number_of(request, "deflection"),
                              number_of(request, "angular_deflection")};
   if (operation == "build") return answer_of({cad::build(solid_from(request), options)});
+  if (operation == "mesh") return answer_of(cad::read_mesh(text_of(request, "content"), options));
   return read_file(request, options, operation == "step");
 }
 

@@ -1,4 +1,6 @@
-#include "engine/geometry/mesh_file.hpp"
+// STL, OBJ, PLY and glTF files through assimp, with every step off that would change geometry. In this program because
+// some damaged files make assimp crash or read for ever.
+#include "engine/geometry/cad/kernel.hpp"
 
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -9,12 +11,14 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/model_format.hpp"
 
-namespace verisim {
+namespace verisim::cad {
 namespace {
 
 /// A model is what its one file holds: whatever else it names (materials, buffers) would be read from disk unseen by
@@ -49,18 +53,31 @@ void check_stl(const std::string& path, const std::string& content) {
        expected, content.size());
 }
 
-/// The same for OBJ: a face or vertex line without its last number is not told by assimp.
 void check_obj(const std::string& path, const std::string& content) {
-  const bool printable = std::none_of(content.begin(), content.end(), [](char c) {
-    return c == '\0' || (static_cast<unsigned char>(c) < 0x20 && std::isspace(static_cast<unsigned char>(c)) == 0);
-  });
+  const bool printable =
+      std::none_of(content.begin(), content.end(), [](unsigned char c) { return c < 0x20 && std::isspace(c) == 0; });
   if (!printable) fail(ErrorKind::input, "{}: this is no OBJ file, it holds binary bytes; export it again", path);
-  if (content.back() != '\n') {
-    const std::size_t last_line = content.rfind('\n') + 1;
-    if (content[last_line] == 'f' || content[last_line] == 'v') {
-      fail(ErrorKind::input, "{}: the file ends in the middle of a line; copy or export it again", path);
-    }
+}
+
+/// Assimp reads a PLY that ends early for ever: at least one line or four bytes are there for each element it
+/// announces.
+void check_ply(const std::string& path, const std::string& content) {
+  const std::size_t end = content.find("end_header");
+  if (end == std::string::npos)
+    fail(ErrorKind::input, "{}: truncated or no PLY file ('end_header' is missing); copy or export it again", path);
+  std::size_t announced = 0;
+  std::istringstream head(content.substr(0, end));
+  for (std::string line; std::getline(head, line);) {
+    if (line.starts_with("element ")) announced += std::strtoull(line.c_str() + line.rfind(' '), nullptr, 10);
   }
+  const bool ascii = content.find("format ascii") < end;
+  const auto lines =
+      static_cast<std::size_t>(std::count(content.begin() + static_cast<long>(end), content.end(), '\n'));
+  const bool unfinished = content.back() != '\n';
+  const std::size_t present = ascii ? lines - 1 + (unfinished ? 1 : 0) : (content.size() - end) / 4;
+  if (lines > 0 && present >= announced) return;
+  fail(ErrorKind::input, "{}: the file is truncated, it announces {} elements and ends before; copy or export it again",
+       path, announced);
 }
 
 void append(const aiMesh& source, const aiMatrix4x4& placement, double scale, TriangleMesh& mesh) {
@@ -85,35 +102,36 @@ void set_color(const aiScene& scene, const aiMesh& mesh, std::array<float, 4>& c
 }
 
 void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, double scale,
-             std::vector<MeshObject>& objects) {
+             std::vector<Part>& parts) {
   const aiMatrix4x4 placement = above * node.mTransformation;
   if (node.mNumMeshes > 0) {
-    MeshObject object;
-    object.name = node.mName.C_Str();
-    for (unsigned i = 0; i < node.mNumMeshes; ++i)
-      append(*scene.mMeshes[node.mMeshes[i]], placement, scale, object.mesh);
-    set_color(scene, *scene.mMeshes[node.mMeshes[0]], object.color);
-    if (!object.mesh.triangles.empty()) objects.push_back(std::move(object));
+    Part part;
+    part.name = node.mName.C_Str();
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) append(*scene.mMeshes[node.mMeshes[i]], placement, scale, part.mesh);
+    set_color(scene, *scene.mMeshes[node.mMeshes[0]], part.color);
+    if (!part.mesh.triangles.empty()) parts.push_back(std::move(part));
   }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], placement, scale, objects);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], placement, scale, parts);
 }
 
-void check_finite(const std::string& path, const std::vector<MeshObject>& objects) {
-  for (const MeshObject& object : objects) {
-    const auto bad = std::find_if(object.mesh.vertices.begin(), object.mesh.vertices.end(),
+void check_finite(const std::string& path, const std::vector<Part>& parts) {
+  for (const Part& part : parts) {
+    const auto bad = std::find_if(part.mesh.vertices.begin(), part.mesh.vertices.end(),
                                   [](const Vector3d& p) { return !p.allFinite(); });
-    if (bad == object.mesh.vertices.end()) continue;
+    if (bad == part.mesh.vertices.end()) continue;
     fail(ErrorKind::input, "{}: vertex {} is ({}, {}, {}): not a finite place; export the model again", path,
-         bad - object.mesh.vertices.begin(), bad->x(), bad->y(), bad->z());
+         bad - part.mesh.vertices.begin(), bad->x(), bad->y(), bad->z());
   }
 }
 
 }  // namespace
 
-std::vector<MeshObject> read_mesh_file(const std::string& path, const std::string& content, double scale) {
+std::vector<Part> read_mesh(const std::string& content, const Options& options) {
+  const std::string& path = options.path;
   const std::string format = extension_of(path);
   if (format == "stl") check_stl(path, content);
   if (format == "obj") check_obj(path, content);
+  if (format == "ply") check_ply(path, content);
   Assimp::Importer importer;
   importer.SetIOHandler(new NoOtherFiles);  // the importer owns it
   const aiScene* scene = importer.ReadFileFromMemory(
@@ -123,12 +141,12 @@ std::vector<MeshObject> read_mesh_file(const std::string& path, const std::strin
          "{}: it cannot be read as {} ({}); it is truncated, damaged or of another format, export it again", path,
          format, scene == nullptr ? importer.GetErrorString() : "incomplete");
   }
-  std::vector<MeshObject> objects;
-  collect(*scene, *scene->mRootNode, aiMatrix4x4(), scale, objects);
-  if (objects.empty())
+  std::vector<Part> parts;
+  collect(*scene, *scene->mRootNode, aiMatrix4x4(), options.scale, parts);
+  if (parts.empty())
     fail(ErrorKind::input, "{}: there are no triangles in it; export the model as a surface mesh", path);
-  check_finite(path, objects);
-  return objects;
+  check_finite(path, parts);
+  return parts;
 }
 
-}  // namespace verisim
+}  // namespace verisim::cad

@@ -1,0 +1,111 @@
+// Whatever becomes of the CAD program is an error here, never a crash, and leaves nothing behind.
+#include "engine/geometry/cad_client.hpp"
+
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+
+#include "tests/geometry/models.hpp"
+
+namespace verisim {
+namespace {
+
+using testing::error_of;
+
+Message request(const std::string& operation, const std::string& ballast = {}) {
+  return {{"request", {text_table("operation", operation), text_table("content", ballast)}}};
+}
+
+void expect_no_child_left() {
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+  EXPECT_EQ(errno, ECHILD);
+}
+
+std::size_t open_descriptors() {
+  const std::filesystem::directory_iterator list("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(list), end(list)));
+}
+
+/// Sets VERISIM_CAD for one test.
+class Program {
+ public:
+  explicit Program(const char* path) { setenv("VERISIM_CAD", path, 1); }
+  ~Program() { unsetenv("VERISIM_CAD"); }
+};
+
+TEST(AskCad, TurnsACrashOfTheKernelIntoBadInput) {
+  const std::string error =
+      error_of(ErrorKind::input, [] { static_cast<void>(ask_cad(request("crash"), "damaged.step")); });
+  EXPECT_EQ(
+      error,
+      "damaged.step: the CAD kernel or mesh reader crashed while reading (signal 6); the file is damaged or beyond it; "
+      "open it in a CAD program and export it again");
+  expect_no_child_left();
+}
+
+TEST(AskCad, StopsAKernelThatHangs) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string error =
+      error_of(ErrorKind::input, [] { static_cast<void>(ask_cad(request("hang"), "endless.step", 0.2)); });
+  EXPECT_NE(error.find("endless.step: the CAD kernel or mesh reader did not finish within 0.2 s"), std::string::npos)
+      << error;
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  expect_no_child_left();
+}
+
+// The request is larger than any socket buffer and nobody reads it: neither a SIGPIPE nor a deadlock.
+TEST(AskCad, SurvivesAProgramThatReadsNothing) {
+  const Program program("/bin/true");
+  const std::string error = error_of(
+      ErrorKind::input, [] { static_cast<void>(ask_cad(request("step", std::string(16 << 20, 'x')), "large.step")); });
+  EXPECT_NE(error.find("exit code 0"), std::string::npos) << error;
+  expect_no_child_left();
+}
+
+TEST(AskCad, RefusesAnAnswerThatIsNone) {
+  const Program program("/bin/cat");  // sends the request back, whole but without sense
+  EXPECT_NO_THROW(static_cast<void>(ask_cad(request("step"), "x.step")));
+  const Program other("/usr/bin/env");
+  EXPECT_THROW(static_cast<void>(ask_cad(request("step"), "x.step")), Error);
+}
+
+TEST(AskCad, SaysWhereTheProgramShouldBe) {
+  const Program program("/nowhere/verisim-cad");
+  const std::string error = error_of(ErrorKind::io, [] { static_cast<void>(ask_cad(request("step"), "x.step")); });
+  EXPECT_NE(error.find("/nowhere/verisim-cad"), std::string::npos) << error;
+}
+
+TEST(AskCad, LeavesNoDescriptorOpen) {
+  const std::size_t before = open_descriptors();
+  for (int i = 0; i < 3; ++i) EXPECT_THROW(static_cast<void>(ask_cad(request("crash"), "x")), Error);
+  EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST(Message, ComesBackAsItWent) {
+  const Message sent = {{"a", {text_table("t", "text"), number_table("n", 0.1)}}, {"", {}}};
+  const Message back = decode(encode(sent));
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(text_of(back[0], "t"), "text");
+  EXPECT_EQ(number_of(back[0], "n"), 0.1);
+  EXPECT_TRUE(back[1].tables.empty());
+}
+
+TEST(Message, CutOffAnywhereIsRefused) {
+  const std::string whole = encode({{"a", {text_table("t", "text"), number_table("n", 0.1)}}});
+  for (std::size_t n = 0; n < whole.size(); ++n)
+    EXPECT_THROW(static_cast<void>(decode(whole.substr(0, n))), Error) << n;
+}
+
+TEST(Message, CarriesSolidsWithoutLoss) {
+  using testing::make;
+  const Solid pin =
+      testing::placed(make(Solid::Kind::cylinder, {0.05, 0.4}), {0.1, 0.2, 0.3}, rotation_from_vector({1, 2, 3}));
+  const Solid solid =
+      make(Solid::Kind::difference, make(Solid::Kind::sum, make(Solid::Kind::box, {1, 2, 3}), pin), pin);
+  EXPECT_EQ(solid_from({"s", tables_of(solid)}).text(), solid.text());
+}
+
+}  // namespace
+}  // namespace verisim
