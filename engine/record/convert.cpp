@@ -282,9 +282,9 @@ ColumnMapping parse_mapping(const std::string& text) {
     rest = trimmed(rest);
   }
   if (!rest.empty()) {
-    const std::optional<double> offset = number_of(rest);
+    const std::optional<double> offset = number_of(rest.substr(1));
     if (!offset || (rest.front() != '+' && rest.front() != '-')) refuse();
-    mapping.offset = *offset;
+    mapping.offset = rest.front() == '-' ? -*offset : *offset;
   }
   if (!std::isfinite(mapping.scale) || !std::isfinite(mapping.offset)) refuse();
   return mapping;

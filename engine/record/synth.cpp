@@ -60,18 +60,18 @@ double minimum_jerk(double s) {
 }
 
 Motion make_sine(const Values& v, std::uint64_t) {
-  return [v](double t) {
-    Sample sample;
-    for (int i = 0; i < 3; ++i) {
-      const std::string axis = kAxes[static_cast<std::size_t>(i)];
-      sample.position[i] = v.at(axis);
-      for (const char* n : {"", "2"}) {
-        const double angle =
-            2 * pinned::kPi * v.at(std::string("frequency") + n + "_" + axis) * t + v.at("phase_" + axis);
-        sample.position[i] += v.at(std::string("amplitude") + n + "_" + axis) * pinned::sin(angle);
+  const Vector3d centre = vector_of(v, ""), phase = vector_of(v, "phase_");
+  const Vector3d amplitude[2] = {vector_of(v, "amplitude_"), vector_of(v, "amplitude2_")};
+  const Vector3d frequency[2] = {vector_of(v, "frequency_"), vector_of(v, "frequency2_")};
+  const double turn_amplitude = v.at("turn_amplitude"), turn_frequency = v.at("turn_frequency");
+  return [=](double t) {
+    Sample sample{.position = centre};
+    for (int n = 0; n < 2; ++n) {
+      for (int i = 0; i < 3; ++i) {
+        sample.position[i] += amplitude[n][i] * pinned::sin(2 * pinned::kPi * frequency[n][i] * t + phase[i]);
       }
     }
-    sample.turn = v.at("turn_amplitude") * pinned::sin(2 * pinned::kPi * v.at("turn_frequency") * t);
+    sample.turn = turn_amplitude * pinned::sin(2 * pinned::kPi * turn_frequency * t);
     return sample;
   };
 }
@@ -116,7 +116,7 @@ Motion make_tremor(const Values& v, std::uint64_t seed) {
 
 Motion make_insertion(const Values& v, std::uint64_t seed) {
   const Vector3d start = vector_of(v, ""), axis = vector_of(v, "axis_");
-  const double depth = v.at("depth"), speed = v.at("speed"), dwell = v.at("dwell");
+  const double depth = v.at("depth"), speed = v.at("speed"), dwell = v.at("dwell"), grasp_at = v.at("grasp_at");
   if (!(axis.norm() > 0)) fail(ErrorKind::usage, "axis_x, axis_y and axis_z are all 0; give the insertion a direction");
   if (!(speed > 0) || !(depth > 0))
     fail(ErrorKind::usage, "speed is {} m/s and depth {} m; both must be above 0", speed, depth);
@@ -130,7 +130,7 @@ Motion make_insertion(const Values& v, std::uint64_t seed) {
     double travel = 0;
     if (phase >= dwell) travel = std::min((phase - dwell) * speed, depth);
     if (phase > 2 * dwell + leg) travel = std::max(depth - (phase - 2 * dwell - leg) * speed, 0.0);
-    return Sample{.position = start + travel * along + shake(t).position, .button = t >= v.at("grasp_at")};
+    return Sample{.position = start + travel * along + shake(t).position, .button = t >= grasp_at};
   };
 }
 

@@ -58,15 +58,16 @@ struct ColumnMapping {
 
 struct ConvertOptions {
   std::string kind = "haptic";
-  double rate_hz = 0;       ///< of the file's rows; > 0: time is row / rate, whatever the file says
-  std::string time_column;  ///< else this column (name or number), with time_scale, shifted to begin at 0, to whole ns
-  double time_scale = 1;    ///< s per unit of that column
-  int every = 1;            ///< take rows 0, n, 2n … (exact decimation)
-  int skip_rows = 0;        ///< lines before the column names or the first number
+  double rate_hz = 0;  ///< of the file's rows; > 0: time is row / rate, whatever the file says
+  std::string time_column =
+      {};                 ///< else this column (name or number), with time_scale, shifted to begin at 0, to whole ns
+  double time_scale = 1;  ///< s per unit of that column
+  int every = 1;          ///< take rows 0, n, 2n … (exact decimation)
+  int skip_rows = 0;      ///< lines before the column names or the first number
   bool cumulative =
       false;  ///< encoder columns are increments of each row: summed, also over rows not taken, and rounded
-  std::string source;
-  std::vector<ColumnMapping> mappings;
+  std::string source = {};
+  std::vector<ColumnMapping> mappings = {};
 };
 /// A foreign CSV to a trace: separated by semicolons, commas, tabs or blanks; with or without column names; byte order
 /// mark, quotes and lines beginning with '#' or '%' accepted. Of a group of which only some are mapped (px py pz;

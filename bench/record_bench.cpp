@@ -1,0 +1,172 @@
+// What recording costs: the loop, which must not feel it (under 1 us a frame), and the writer beside it. A row of 41
+// columns and about 1 kB, as the peg scene with three links writes it; the run is the dissertation's, 45,833 frames.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "engine/base/random.hpp"
+#include "engine/record/run_file.hpp"
+#include "engine/record/synth.hpp"
+#include "engine/record/trace.hpp"
+
+namespace verisim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+bool smoke() {
+  return std::getenv("VERISIM_BENCH_SMOKE") != nullptr;
+}
+
+std::string file() {
+  return (std::filesystem::temp_directory_path() / "verisim_record_bench.h5").string();
+}
+
+Schema schema() {
+  Schema s;
+  const auto add = [&](const std::string& path, Dtype dtype, std::size_t width) {
+    s.add({.path = path, .dtype = dtype, .width = width, .units = "1", .description = path, .enum_names = {}});
+  };
+  add("/state/time", Dtype::f64, 1);
+  for (const char* body : {"block", "pin", "plate"}) {
+    const std::string path = std::string("/state/body/") + body;
+    add(path + "/pose", Dtype::f64, 7);
+    add(path + "/twist", Dtype::f64, 6);
+    add(path + "/force", Dtype::f64, 6);
+  }
+  for (const char* field : {"handle_pose", "raw_pose"}) add(std::string("/state/device/omni/") + field, Dtype::f64, 7);
+  add("/state/device/omni/wrench", Dtype::f64, 6);
+  for (const char* link : {"block~pin", "block~plate", "pin~plate"}) {
+    const std::string path = std::string("/state/link/") + link;
+    for (const char* field : {"/contacts", "/cache_hits", "/cache_misses"}) add(path + field, Dtype::u32, 1);
+    add(path + "/constraint", Dtype::u8, 1);
+    for (const char* field : {"/alignment", "/max_penetration"}) add(path + field, Dtype::f64, 1);
+    add(path + "/wrench", Dtype::f64, 6);
+  }
+  add("/state/hash", Dtype::u64, 1);
+  for (const char* field : {"points", "voxels", "lookups", "bytes"}) add(std::string("/cost/") + field, Dtype::u64, 1);
+  add("/timing/frame_ns", Dtype::u64, 1);
+  add("/timing/stage_ns", Dtype::u32, 8);
+  return s;
+}
+
+/// Rows of numbers that do not compress and do not repeat; drawn before the clock starts.
+std::vector<std::byte> make_rows(std::size_t count, std::size_t bytes) {
+  const RandomStream random(42, "record_bench");
+  std::vector<std::byte> rows(count * bytes);
+  for (std::size_t i = 0; i + 8 <= rows.size(); i += 8) {
+    const std::uint64_t value = random.bits(i);
+    std::memcpy(&rows[i], &value, sizeof value);
+  }
+  return rows;
+}
+
+struct Measured {
+  std::vector<double> loop_ns;  ///< begin_row, copying the row, end_row
+  double total_s = 0;           ///< first row to closed file
+  double close_s = 0;
+};
+
+Measured record(const std::vector<std::byte>& rows, const Schema& s, std::size_t frames, bool paced,
+                std::size_t ring_rows) {
+  Measured m;
+  m.loop_ns.reserve(frames);
+  const std::size_t kinds = rows.size() / s.row_bytes();
+  Recorder recorder(file(), s, {}, {.paced = paced, .ring_rows = ring_rows});
+  const auto start = Clock::now();
+  for (std::size_t i = 0; i < frames; ++i) {
+    const auto before = Clock::now();
+    std::memcpy(recorder.begin_row().data(), &rows[(i % kinds) * s.row_bytes()], s.row_bytes());
+    recorder.end_row();
+    m.loop_ns.push_back(std::chrono::duration<double, std::nano>(Clock::now() - before).count());
+  }
+  const auto closing = Clock::now();
+  recorder.close({}, {});
+  m.close_s = std::chrono::duration<double>(Clock::now() - closing).count();
+  m.total_s = std::chrono::duration<double>(Clock::now() - start).count();
+  std::sort(m.loop_ns.begin(), m.loop_ns.end());
+  return m;
+}
+
+/// Is every row in the file as it was given?
+bool file_holds(const std::vector<std::byte>& rows, const Schema& s, std::size_t frames) {
+  const RunFile run(file());
+  if (run.rows() != frames) return false;
+  const std::size_t kinds = rows.size() / s.row_bytes();
+  for (const Column& c : s.columns()) {
+    const std::vector<std::byte> values = run.column(c);
+    for (std::size_t i = 0; i < frames; ++i) {
+      const std::byte* given = &rows[(i % kinds) * s.row_bytes() + c.offset];
+      if (std::memcmp(&values[i * c.bytes()], given, c.bytes()) != 0) return false;
+    }
+  }
+  return true;
+}
+
+void report(benchmark::State& state, const Measured& m, const Schema& s, std::size_t frames) {
+  const double n = static_cast<double>(frames);
+  state.counters["loop_ns_p50"] = m.loop_ns[frames / 2];
+  state.counters["loop_ns_p99"] = m.loop_ns[frames * 99 / 100];
+  state.counters["loop_ns_max"] = m.loop_ns.back();
+  state.counters["rows_per_s"] = n / m.total_s;
+  state.counters["close_ms"] = m.close_s * 1e3;
+  state.counters["columns"] = static_cast<double>(s.columns().size());
+  state.counters["row_bytes"] = static_cast<double>(s.row_bytes());
+  state.counters["file_per_row_bytes"] = static_cast<double>(std::filesystem::file_size(file())) / n;
+}
+
+// The loop alone: a ring that takes the whole run, so that it never waits. The bound: under 1 us a frame.
+void BM_LoopNeverWaits(benchmark::State& state) {
+  const Schema s = schema();
+  const std::size_t frames = smoke() ? 500 : 45'833;
+  const std::vector<std::byte> rows = make_rows(257, s.row_bytes());
+  Measured m;
+  for (auto _ : state) m = record(rows, s, frames, true, frames + 1);
+  if (!file_holds(rows, s, frames)) state.SkipWithError("the file does not hold what was recorded");
+  report(state, m, s, frames);
+  std::filesystem::remove(file());
+}
+BENCHMARK(BM_LoopNeverWaits)->Unit(benchmark::kMillisecond)->Iterations(3)->UseRealTime();
+
+// The whole dissertation run as fast as the file takes it: the loop does nothing but record, so it waits most of the
+// time.
+void BM_WriterAlone(benchmark::State& state) {
+  const Schema s = schema();
+  const std::size_t frames = smoke() ? 500 : 45'833;
+  const std::vector<std::byte> rows = make_rows(257, s.row_bytes());
+  Measured m;
+  for (auto _ : state) m = record(rows, s, frames, false, 0);
+  if (!file_holds(rows, s, frames)) state.SkipWithError("the file does not hold what was recorded");
+  report(state, m, s, frames);
+  std::filesystem::remove(file());
+}
+BENCHMARK(BM_WriterAlone)->Unit(benchmark::kMillisecond)->Iterations(3)->UseRealTime();
+
+// Parsing a CSV trace, in bytes a second.
+void BM_ParseTrace(benchmark::State& state) {
+  const Trace trace = synthesize("tremor", {{"duration", smoke() ? 1.0 : 60.0}}, 1);
+  const std::string path = file() + ".csv";
+  write_trace(path, trace);
+  std::string content(std::filesystem::file_size(path), '\0');
+  if (std::FILE* in = std::fopen(path.c_str(), "rb"); in != nullptr) {
+    if (std::fread(content.data(), 1, content.size(), in) != content.size())
+      state.SkipWithError("cannot read the trace");
+    std::fclose(in);
+  }
+  Trace parsed;
+  for (auto _ : state) parsed = parse_trace("bench.csv", content, "haptic", {});
+  if (parsed.values != trace.values) state.SkipWithError("the trace did not come back as it was");
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(content.size()));
+  std::filesystem::remove(path);
+}
+BENCHMARK(BM_ParseTrace)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace verisim
+
+BENCHMARK_MAIN();
