@@ -1,0 +1,110 @@
+#include "engine/script/assembly_node.hpp"
+
+#include <type_traits>
+
+#include "engine/base/error.hpp"
+
+namespace verisim::script {
+namespace {
+
+struct Leaf {
+  const Node* node;
+  double scale;
+  Pose pose;
+};
+
+void gather(const Node& node, double scale, const Pose& pose, std::vector<Leaf>& leaves) {
+  if (node.kind != Node::Kind::group) {
+    leaves.push_back({&node, scale, pose});
+    return;
+  }
+  // pose * (scale * (inner.pose * (inner.scale * x))): a similarity again.
+  const Pose combined = pose * Pose{scale * node.pose.position, node.pose.rotation};
+  for (const auto& child : node.children) gather(*child, scale * node.scale, combined, leaves);
+}
+
+bool same(const Pose& a, const Pose& b) {
+  return a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+std::vector<Part> parts_of(const Leaf& leaf, Inputs& inputs) {
+  const Node& node = *leaf.node;
+  if (node.kind == Node::Kind::solid) return {inputs.solid(*scaled(node.solid, leaf.scale), LoadOptions{})};
+  const std::vector<Part>& parts = load_file(inputs, node.file, leaf.scale * node.file_scale);
+  if (node.part == 0) return parts;
+  if (static_cast<std::size_t>(node.part) > parts.size())
+    fail(ErrorKind::input, "{}: has no part {}; it has {} (modelParts lists them)", node.file, node.part, parts.size());
+  return {parts[static_cast<std::size_t>(node.part) - 1]};
+}
+
+std::string stem_of(const std::string& file) {
+  const std::size_t slash = file.find_last_of('/');
+  const std::string name = slash == std::string::npos ? file : file.substr(slash + 1);
+  return name.substr(0, name.find_last_of('.'));
+}
+
+// Entities differ in their fields' names; each gets its points moved and its directions turned.
+struct Placer {
+  const Pose& X;
+  void point(Vector3d& p) const { p = X * p; }
+  void turn(Vector3d& v) const { v = X.rotation * v; }
+
+  template <typename Entity>
+  void operator()(Entity& entity) const {
+    if constexpr (requires { entity.point; }) point(entity.point);
+    if constexpr (requires { entity.center; }) point(entity.center);
+    if constexpr (requires { entity.normal; }) turn(entity.normal);
+    if constexpr (requires { entity.direction; }) turn(entity.direction);
+    if constexpr (requires { entity.x_axis; }) turn(entity.x_axis);
+  }
+};
+
+}  // namespace
+
+const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale) {
+  LoadOptions options;
+  if (scale != 1) options.scale = scale;
+  return inputs.model(file, options);
+}
+
+Part placed(const Part& part, const Pose& X) {
+  Part result = part;
+  const Placer place{X};
+  for (Vector3d& p : result.mesh.vertices) place.point(p);
+  for (Face& face : result.faces) std::visit(place, face.surface);
+  for (Edge& edge : result.edges) {
+    std::visit(place, edge.curve);
+    for (Vector3d& p : edge.polyline) place.point(p);
+  }
+  place.point(result.mass.centroid);
+  const Matrix3d R = X.rotation.toRotationMatrix();
+  result.mass.inertia = R * result.mass.inertia * R.transpose();
+  return result;
+}
+
+std::shared_ptr<const Solid> scaled(const std::shared_ptr<const Solid>& solid, double scale) {
+  if (scale == 1) return solid;
+  auto result = std::make_shared<Solid>(*solid);
+  for (double& size : result->sizes) size *= scale;
+  result->placement.position *= scale;
+  for (auto& child : result->children) child = scaled(child, scale);
+  return result;
+}
+
+PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs) {
+  std::vector<Leaf> leaves;
+  for (const auto& node : nodes) gather(*node, 1, Pose{}, leaves);
+  if (leaves.empty()) fail(ErrorKind::input, "the object has no geometry; give it a Model or a Solid");
+  PlacedParts result;
+  bool one_placement = true;
+  for (const Leaf& leaf : leaves) one_placement = one_placement && same(leaf.pose, leaves.front().pose);
+  if (one_placement) result.pose = leaves.front().pose;
+  for (const Leaf& leaf : leaves) {
+    for (const Part& part : parts_of(leaf, inputs))
+      result.parts.push_back(one_placement ? part : placed(part, leaf.pose));
+    if (result.stem.empty() && leaf.node->kind == Node::Kind::model) result.stem = stem_of(leaf.node->file);
+  }
+  return result;
+}
+
+}  // namespace verisim::script

@@ -1,0 +1,51 @@
+// The tree that a script builds below addObject: models, solids, and placements of them; and how it becomes the parts of
+// one body.
+//
+// Body coordinates. Scales are baked into the geometry. If all leaves of a child have one placement (the usual
+// Transform{…, Model "f.step"}), that placement belongs to the start pose and the body's coordinates are those of the
+// model file, scaled. Leaves with different placements are baked into the coordinates of the child's outermost group.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/loader.hpp"
+#include "engine/simulation/inputs.hpp"
+
+namespace verisim::script {
+
+struct Node {
+  enum class Kind { model, solid, group };
+  Kind kind = Kind::group;
+  // model
+  std::string file;        ///< as Inputs knows it
+  int part = 0;            ///< 1 … n: this solid of the file alone; 0: all
+  double file_scale = 1;   ///< Model{ scale= }
+  // solid
+  std::shared_ptr<const Solid> solid;
+  // group: similarity x -> pose * (scale x)
+  double scale = 1;
+  Pose pose;
+  std::vector<std::shared_ptr<Node>> children;
+};
+
+struct PlacedParts {
+  Pose pose;                ///< of the body's coordinates in those of the child
+  std::vector<Part> parts;  ///< in body coordinates
+  std::string stem;         ///< file name without folder and extension of the first model; empty for solids
+};
+
+/// Loads the leaves below `nodes`. Error(input): from loading; nothing in it; a part number that the file does not have.
+[[nodiscard]] PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs);
+
+/// The parts of a model file, with the scale's meaning of LoadOptions.
+[[nodiscard]] const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale);
+
+/// A part seen from other coordinates: every point p becomes X * p. Area, volume and trimmed bounds stay.
+[[nodiscard]] Part placed(const Part& part, const Pose& X);
+
+/// The solid with all lengths times `scale`.
+[[nodiscard]] std::shared_ptr<const Solid> scaled(const std::shared_ptr<const Solid>& solid, double scale);
+
+}  // namespace verisim::script

@@ -1,0 +1,217 @@
+#include "engine/script/script_state.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/record/trace.hpp"
+#include "engine/script/values.hpp"
+
+namespace verisim::script {
+namespace {
+
+std::string file_name_of(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+/// The hardware or source at the inner end of a chain of filters: it carries the name.
+DeviceNode& innermost(DeviceNode& node) {
+  DeviceNode* at = &node;
+  while ((at->kind == DeviceNode::Kind::scale || at->kind == DeviceNode::Kind::translate) && at->inner) at = at->inner.get();
+  return *at;
+}
+
+std::shared_ptr<Device> make_device(DeviceNode& node, std::uint64_t seed) {
+  if (node.device) return node.device;
+  const std::shared_ptr<Device> inner = node.inner ? make_device(*node.inner, seed) : nullptr;
+  node.device = at_place(node.place, [&]() -> std::shared_ptr<Device> {
+    switch (node.kind) {
+      case DeviceNode::Kind::hardware: return make_hardware(node.hardware, inner);
+      case DeviceNode::Kind::replay: return make_replay(node.name, node.samples);
+      case DeviceNode::Kind::hand:
+        if (!node.own_seed) node.hand.seed = seed;
+        return make_hand(node.hand);
+      case DeviceNode::Kind::scale: return make_scale(inner, node.factor);
+      case DeviceNode::Kind::translate: return make_translate(inner, node.translation);
+    }
+    return nullptr;
+  });
+  return node.device;
+}
+
+}  // namespace
+
+ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenario_inputs)
+    : Sandbox(file_name_of(scenario_options.path), scenario_options.memory_limit),
+      options(scenario_options),
+      inputs(scenario_inputs) {
+  lua_State* L = lua();
+  if (options.seed) scene.parameters.seed = *options.seed;
+  add_parameter_words(L);
+  add_scene_words(L);
+  add_node_words(L);
+  add_body_words(L);
+  add_device_words(L);
+  add_simulation_words(L);
+  add_action_words(L);
+  add_file_words(L);
+  add_vector_words(L);
+  add_matrix_words(L);
+  add_drawing_words(L);
+}
+
+int ScriptState::run_file(lua_State* L, const std::string& file) {
+  const int top = lua_gettop(L);
+  if (const auto failure = load(L, file, inputs.read(file))) {
+    // The message has the place already; raise_text would put another before it.
+    push_text(L, failure->text);
+    lua_error(L);
+  }
+  lua_call(L, 0, LUA_MULTRET);
+  return lua_gettop(L) - top;
+}
+
+void ScriptState::finish() {
+  check_sets();
+  if (options.seed) scene.parameters.seed = *options.seed;
+  if (options.duration) scene.parameters.duration = options.duration;
+  name_devices();
+  finish_devices();
+  bind_devices();
+  for (const auto& [device, body] : grasps)
+    scene.grasps.push_back({.device = at_place(device->place, [&] { return device_index(*device); }), .body = body});
+}
+
+void ScriptState::check_sets() const {
+  if (options.sets.empty() || parameters_place) return;  // params{} itself checks against what it declares
+  const auto& [key, value] = options.sets.front();
+  fail(ErrorKind::input, "--set {}={}: {} declares no parameters; add params{{ {} = … }} to it", key, value, name(), key);
+}
+
+void ScriptState::name_devices() {
+  std::vector<std::string> taken;
+  for (const auto& device : devices) {
+    DeviceNode& node = innermost(*device);
+    if (node.name.empty()) continue;
+    if (std::find(taken.begin(), taken.end(), node.name) != taken.end())
+      fail(ErrorKind::input, "{}: there is a device '{}' already; give each another name=", node.place, node.name);
+    taken.push_back(node.name);
+  }
+  for (const auto& device : devices) {
+    DeviceNode& node = innermost(*device);
+    if (node.name.empty()) {
+      const std::string base = node.kind == DeviceNode::Kind::hand       ? "hand"
+                               : node.kind == DeviceNode::Kind::replay ? "replay"
+                                                                       : node.hardware.name;
+      node.name = base;
+      for (int i = 2; std::find(taken.begin(), taken.end(), node.name) != taken.end(); ++i)
+        node.name = fmt::format("{}{}", base, i);
+      taken.push_back(node.name);
+    }
+    node.hardware.name = node.name;
+    node.hand.name = node.name;
+    if (node.inner && node.inner->name.empty()) node.inner->name = node.inner->hand.name = node.name;
+  }
+}
+
+void ScriptState::finish_devices() {
+  for (const auto& node : devices) scene.devices.push_back(make_device(*node, scene.parameters.seed));
+}
+
+void ScriptState::bind_devices() {
+  std::vector<std::string> names;
+  for (const auto& device : devices) names.push_back(innermost(*device).name);
+  for (const auto& [wanted, source] : options.binds) {
+    const auto found = std::find(names.begin(), names.end(), wanted);
+    if (found == names.end())
+      fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted, suggestion(wanted, names));
+    DeviceNode& node = innermost(*devices[static_cast<std::size_t>(found - names.begin())]);
+    if (node.kind != DeviceNode::Kind::hardware)
+      fail(ErrorKind::input, "--bind {}={}: '{}' is driven by the scenario itself; bind a device of Devices.Sensable or Devices.Haption",
+           wanted, source, wanted);
+    at_place(fmt::format("--bind {}={}", wanted, source), [&, bound = source] {
+      drive(*node.device, make_replay(node.name, read_samples(inputs, bound, TraceLimits{}.max_gap, false)));
+    });
+  }
+}
+
+std::size_t ScriptState::device_index(const DeviceNode& wanted) const {
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    for (const DeviceNode* node = devices[i].get(); node != nullptr; node = node->inner.get())
+      if (node == &wanted) return i;
+  fail(ErrorKind::input, "this device grasps a body but was never added; call addDevice(device) first");
+}
+
+void ScriptState::attach(Simulation& running) {
+  simulation = &running;
+  for (const auto& [kind, text] : early_events_) simulation->add_event(kind, text);
+  early_events_.clear();
+  simulation->add_clock(1 / simulation->dt(), [this](double) {
+    for (const auto& counter : counters) counter->collisions += simulation->body_contacts(counter->body);
+  });
+  simulation->add_clock(scene.parameters.frame_rate, [this](double) { frame(); });
+}
+
+// VR JuggLua's order: the run buffer, then the actions; what a chunk adds as an action runs in the same frame.
+void ScriptState::frame() {
+  std::vector<std::pair<std::string, std::string>> chunks;
+  chunks.swap(run_buffer);  // chunks that a chunk adds wait for the next frame
+  for (const auto& [chunk_name, text] : chunks) {
+    allow(kFrameWork);
+    std::optional<LuaFailure> failure = load(lua(), chunk_name, text);
+    if (!failure) failure = call(lua(), 0, 0);
+    if (failure) report_failure("a chunk of the run buffer failed", *failure);
+  }
+  actions.update(scene.parameters.frame_rate);
+}
+
+void ScriptState::notice(const std::string& text) {
+  if (!told_.insert(text).second) return;
+  notices.push_back(text);
+  event("notice", text);
+}
+
+void ScriptState::event(const std::string& kind, const std::string& text) {
+  if (simulation != nullptr)
+    simulation->add_event(kind, text);
+  else
+    early_events_.emplace_back(kind, text);
+}
+
+void ScriptState::report_failure(const std::string& what, const LuaFailure& failure) {
+  event("script error", fmt::format("{} ({})", failure.text, what));
+  std::fprintf(stderr, "%s: %s (%s; the simulation goes on)\n", "warning", failure.text.c_str(), what.c_str());
+}
+
+void ScriptState::print(const std::string& line) {
+  event("print", line);
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+double ScriptState::random() { return RandomStream(scene.parameters.seed, random_name_).uniform(randoms_drawn_++); }
+
+void ScriptState::seed_random(double seed) {
+  random_name_ = fmt::format("script {}", seed);
+  randoms_drawn_ = 0;
+}
+
+HapticSamples read_samples(Inputs& inputs, const std::string& name, double max_gap, bool allow_gaps) {
+  TraceLimits limits;
+  limits.max_gap = max_gap;
+  limits.allow_gaps = allow_gaps;
+  const Trace trace = parse_trace(name, inputs.read(name), "haptic", limits);
+  HapticSamples samples;
+  const auto column = [&](const char* wanted) { return static_cast<std::size_t>(trace.column(wanted)); };
+  const std::size_t t = column("t"), px = column("px"), py = column("py"), pz = column("pz");
+  const std::size_t qx = column("qx"), qy = column("qy"), qz = column("qz"), qw = column("qw");
+  const bool has_button = trace.column("button") >= 0;
+  for (std::size_t row = 0; row < trace.rows(); ++row) {
+    const auto at = [&](std::size_t c) { return trace.at(row, c); };
+    samples.t.push_back(at(t) - trace.at(0, t));
+    samples.pose.push_back({{at(px), at(py), at(pz)}, Quaterniond(at(qw), at(qx), at(qy), at(qz)).normalized()});
+    if (has_button) samples.button.push_back(at(column("button")) != 0 ? 1 : 0);
+  }
+  return samples;
+}
+
+}  // namespace verisim::script

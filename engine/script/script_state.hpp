@@ -1,0 +1,148 @@
+// What the words of a scenario act on: the scene while it is built, then the simulation while it runs. One per script;
+// every word reaches it by ScriptState::of(L).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/base/random.hpp"
+#include "engine/device/hardware.hpp"
+#include "engine/device/sources.hpp"
+#include "engine/script/assembly_node.hpp"
+#include "engine/script/frame_actions.hpp"
+#include "engine/script/sandbox.hpp"
+#include "engine/script/scenario.hpp"
+
+namespace verisim::script {
+
+/// Work units that each action, and each chunk of the run buffer, may spend in one script frame.
+inline constexpr std::uint64_t kFrameWork = 10'000'000;
+
+/// A device as described; made real by finish_devices, when seed and bindings are known.
+struct DeviceNode {
+  enum class Kind { hardware, replay, hand, scale, translate };
+  Kind kind = Kind::hardware;
+  std::string name;                         ///< empty until finish_devices for one without a name
+  std::string place;                        ///< FILE:LINE of the word, for later errors
+  HardwareDescription hardware;             // hardware
+  HapticSamples samples;                    // replay
+  HandDescription hand;                     // hand
+  bool own_seed = false;                    // hand: seed= was given
+  double factor = 1;                        // scale
+  Vector3d translation = Vector3d::Zero();  // translate
+  std::shared_ptr<DeviceNode> inner;        ///< hardware: its source (may be null); filters: what they wrap
+  std::shared_ptr<Device> device;           ///< null until finish_devices
+};
+
+struct BodyHandle {
+  std::size_t index;  ///< in Scene::bodies
+};
+
+/// CollisionCounter(body): colliding voxel pairs of its body, summed over the frames since the last reset.
+struct CollisionCounter {
+  std::size_t body = 0;
+  std::uint64_t collisions = 0;
+};
+
+struct FrameActionHandle {
+  std::uint64_t id;
+};
+
+class ScriptState : public Sandbox {
+ public:
+  ScriptState(const ScenarioOptions& options, Inputs& inputs);
+  static ScriptState& of(lua_State* L) { return static_cast<ScriptState&>(Sandbox::of(L)); }
+
+  /// Runs a file of the scenario on L and leaves its results. Error(input): no such file. Lua errors pass through.
+  int run_file(lua_State* L, const std::string& name);
+  /// Once, after the script: unknown --set keys, --bind, devices, grasps; completes `scene`. Error(input).
+  void finish();
+  void attach(Simulation& simulation);
+
+  /// A questioned or ignored thing: told once, on stderr by the caller of Scenario::notices and in /events.
+  void notice(const std::string& text);
+  void event(const std::string& kind, const std::string& text);
+  /// Runs one piece of the running scene's script; a failure becomes an event and the simulation goes on.
+  void report_failure(const std::string& what, const LuaFailure& failure);
+
+  /// The description of a body while the scene is built.
+  [[nodiscard]] BodyDescription& described_body(std::size_t body) { return scene.bodies[body]; }
+  [[nodiscard]] double time() const { return simulation == nullptr ? 0 : simulation->time(); }
+
+  // Sandbox
+  void print(const std::string& line) override;
+  [[nodiscard]] double clock() const override { return time(); }
+  [[nodiscard]] double random() override;
+  void seed_random(double seed) override;
+  void stop() override { finished = true; }
+
+  const ScenarioOptions options;
+  Inputs& inputs;
+  Scene scene;
+  bool scene_taken = false;
+  std::vector<std::shared_ptr<DeviceNode>> devices;  ///< in the order of addDevice
+  std::vector<std::pair<std::shared_ptr<DeviceNode>, std::size_t>> grasps;
+  std::vector<std::shared_ptr<CollisionCounter>> counters;
+  Simulation* simulation = nullptr;  ///< null while the scene is built
+
+  FrameActions actions{*this};
+  std::vector<std::pair<std::string, std::string>> run_buffer;  ///< chunk name, text
+  std::vector<std::string> search_path;
+
+  std::optional<std::string> parameters_place;  ///< FILE:LINE of params{}
+  std::string parameters_json = "{}";
+  std::vector<std::string> parameter_names;
+
+  std::string outcome;
+  bool finished = false;
+  std::vector<Measure> measures;
+  std::vector<std::string> notices;
+  std::vector<double> masses;  ///< of described bodies, kg
+
+  /// Index in scene.devices of the chain that `node` is part of. Error(input) if it was never added.
+  [[nodiscard]] std::size_t device_index(const DeviceNode& node) const;
+
+ private:
+  void check_sets() const;
+  void finish_devices();
+  void bind_devices();
+  void name_devices();
+  void frame();
+
+  std::set<std::string> told_;
+  std::vector<std::pair<std::string, std::string>> early_events_;
+  std::string random_name_ = "script";
+  std::uint64_t randoms_drawn_ = 0;
+};
+
+/// HapticSamples of a trace's content. `name` is for the messages.
+[[nodiscard]] HapticSamples read_samples(Inputs& inputs, const std::string& name, double max_gap, bool allow_gaps);
+
+/// Runs `make` and puts `place` before the text of an Error that it throws.
+template <typename Make>
+auto at_place(const std::string& place, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw Error(error.kind(), place + ": " + error.what());
+  }
+}
+
+// The words, by subject: words_*.cpp.
+void add_parameter_words(lua_State* L);   ///< params, mm, deg, outcome, measure
+void add_scene_words(lua_State* L);       ///< defineSimulationParameters, addObject
+void add_node_words(lua_State* L);        ///< Model, modelParts, Transform, Group, MatrixTransform, Solid
+void add_body_words(lua_State* L);        ///< what addObject returns
+void add_device_words(lua_State* L);      ///< Devices, filters, addDevice, grasp
+void add_simulation_words(lua_State* L);  ///< simulation, CollisionCounter
+void add_action_words(lua_State* L);      ///< Actions, runbuf
+void add_file_words(lua_State* L);        ///< require, dofile, runfile, vrjLua
+void add_vector_words(lua_State* L);      ///< osg.Vec3, osg.Quat, AngleAxis, Axis, Degrees, Vec …
+void add_matrix_words(lua_State* L);      ///< osg.Matrix
+void add_drawing_words(lua_State* L);     ///< what only draws or sounds; last, so that it replaces nothing
+
+}  // namespace verisim::script

@@ -1,0 +1,150 @@
+// Values between Lua and C++: objects of the engine as Lua userdata, and the checked reading of what a script gives.
+// Everything here raises a Lua error that names the word, the field, what it is and what it must be.
+#pragma once
+
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/pose.hpp"
+#include "engine/script/sandbox.hpp"
+
+namespace verisim::script {
+
+/// osg.Matrix: 4 x 4, rows act on row vectors from the left (v * M), as OpenSceneGraph has it.
+using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+struct Node;
+struct BodyHandle;
+struct DeviceNode;
+struct CollisionCounter;
+struct FrameActionHandle;
+struct Drawing;
+
+/// The name of each type in messages and as the key of its metatable.
+template <typename T>
+inline constexpr const char* kTypeName = nullptr;
+template <>
+inline constexpr const char* kTypeName<Vector3d> = "osg.Vec3d";
+template <>
+inline constexpr const char* kTypeName<Quaterniond> = "osg.Quat";
+template <>
+inline constexpr const char* kTypeName<Matrix> = "osg.Matrix";
+template <>
+inline constexpr const char* kTypeName<Pose> = "pose";
+template <>
+inline constexpr const char* kTypeName<std::shared_ptr<Node>> = "node";
+template <>
+inline constexpr const char* kTypeName<BodyHandle> = "body";
+template <>
+inline constexpr const char* kTypeName<std::shared_ptr<DeviceNode>> = "device";
+template <>
+inline constexpr const char* kTypeName<std::shared_ptr<CollisionCounter>> = "CollisionCounter";
+template <>
+inline constexpr const char* kTypeName<FrameActionHandle> = "frame action";
+template <>
+inline constexpr const char* kTypeName<Drawing> = "drawing";
+
+namespace detail {
+template <typename T>
+T* aligned(void* block) {  // Lua aligns userdata to 8 bytes, Eigen's quaternions want 16 or more
+  std::size_t space = sizeof(T) + alignof(T);
+  return static_cast<T*>(std::align(alignof(T), sizeof(T), block, space));
+}
+template <typename T>
+int destroy(lua_State* L) {
+  aligned<T>(lua_touserdata(L, 1))->~T();
+  return 0;
+}
+}  // namespace detail
+
+/// Leaves the metatable of T on the stack; makes it at first use. Scripts cannot get at it.
+template <typename T>
+void push_metatable(lua_State* L) {
+  if (luaL_newmetatable(L, kTypeName<T>) == 0) return;
+  lua_pushstring(L, kTypeName<T>);
+  lua_setfield(L, -2, "__metatable");
+  if constexpr (!std::is_trivially_destructible_v<T>) {
+    lua_pushcfunction(L, detail::destroy<T>);
+    lua_setfield(L, -2, "__gc");
+  }
+}
+
+template <typename T>
+void push(lua_State* L, T value) {
+  void* block = lua_newuserdata(L, sizeof(T) + alignof(T));
+  new (detail::aligned<T>(block)) T(std::move(value));
+  push_metatable<T>(L);
+  lua_setmetatable(L, -2);
+}
+
+/// The T at `index`, or null if something else is there.
+template <typename T>
+T* get_if(lua_State* L, int index) {
+  void* block = lua_touserdata(L, index);
+  if (block == nullptr || lua_getmetatable(L, index) == 0) return nullptr;
+  lua_getfield(L, LUA_REGISTRYINDEX, kTypeName<T>);
+  const bool same = lua_rawequal(L, -1, -2) != 0;
+  lua_pop(L, 2);
+  return same ? detail::aligned<T>(block) : nullptr;
+}
+
+/// What stands at `index`, for messages: "a text ('abc')", "nothing", "a body".
+[[nodiscard]] std::string described(lua_State* L, int index);
+
+/// The T at `index`; `what` begins the message if something else is there.
+template <typename T>
+T& get(lua_State* L, int index, const std::string& what) {
+  T* value = get_if<T>(L, index);
+  if (value == nullptr) raise(L, "{} must be a {}, not {}", what, kTypeName<T>, described(L, index));
+  return *value;
+}
+
+[[nodiscard]] double number_at(lua_State* L, int index, const std::string& what);       ///< finite
+[[nodiscard]] std::string text_at(lua_State* L, int index, const std::string& what);
+[[nodiscard]] bool boolean_at(lua_State* L, int index, const std::string& what);
+[[nodiscard]] Vector3d vector_at(lua_State* L, int index, const std::string& what);     ///< osg.Vec3 or {x, y, z}
+[[nodiscard]] Quaterniond rotation_at(lua_State* L, int index, const std::string& what);///< osg.Quat or {x, y, z, w}; unit
+void push_text(lua_State* L, const std::string& text);
+
+/// ", or an empty string": "; did you mean 'x'? (a, b, c)" for a wrong name among `known` (sorted here).
+[[nodiscard]] std::string suggestion(const std::string& name, std::vector<std::string> known);
+
+/// The table that a word is called with: word{ field = value, child, … }. Each read names a field; finish() refuses the rest.
+class Fields {
+ public:
+  /// Raises if there is no table at `index`.
+  Fields(lua_State* L, int index, std::string word);
+
+  [[nodiscard]] std::optional<double> number(const char* name);
+  [[nodiscard]] double number(const char* name, double otherwise) { return number(name).value_or(otherwise); }
+  /// A number that must be above zero.
+  [[nodiscard]] std::optional<double> positive(const char* name);
+  [[nodiscard]] std::optional<std::string> text(const char* name);
+  [[nodiscard]] std::optional<bool> boolean(const char* name);
+  [[nodiscard]] std::optional<Vector3d> vector(const char* name);
+  [[nodiscard]] std::optional<Quaterniond> rotation(const char* name);
+  /// Leaves the field's value on the stack if there is one.
+  [[nodiscard]] bool push(const char* name);
+  /// A field that is allowed and has no effect; true if it is there.
+  [[nodiscard]] bool accepted(const char* name);
+
+  /// Entries without a name: 1 … n.
+  [[nodiscard]] int children() const { return static_cast<int>(lua_objlen(L_, index_)); }
+  void push_child(int i) { lua_rawgeti(L_, index_, i); }
+  [[nodiscard]] std::string name_of(const char* field) const { return word_ + ": " + field; }
+
+  /// Raises for a field that no read has named: "addObject has no 'densty'; did you mean 'density'? (…)".
+  void finish(bool children_allowed);
+
+ private:
+  lua_State* L_;
+  int index_;
+  std::string word_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace verisim::script

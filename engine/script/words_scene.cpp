@@ -1,0 +1,163 @@
+// defineSimulationParameters and addObject: what makes a scene.
+#include <algorithm>
+
+#include "engine/script/script_state.hpp"
+#include "engine/script/values.hpp"
+
+namespace verisim::script {
+namespace {
+
+constexpr double kUsualVoxelSize = 0.003;  // m, SPARTA's published scripts
+
+Hybrid hybrid_named(lua_State* L, const std::string& what, const std::string& name) {
+  if (name == "off") return Hybrid::off;
+  if (name == "restore") return Hybrid::restore;
+  if (name == "blend") return Hybrid::blend;
+  if (name == "exact") return Hybrid::exact;
+  raise(L, "{} is '{}' but must be one of 'off', 'restore', 'blend', 'exact'", what, name);
+}
+
+Integrator integrator_named(lua_State* L, const std::string& name) {
+  if (name == "semi-implicit") return Integrator::semi_implicit;
+  if (name == "implicit") return Integrator::implicit;
+  raise(L, "integrator is '{}'{}", name, suggestion(name, {"semi-implicit", "implicit"}));
+}
+
+// Words of SPARTA that change nothing here: said once, so that nobody thinks they do.
+void accept_without_effect(lua_State* L, Fields& fields, std::initializer_list<const char*> names) {
+  for (const char* name : names)
+    if (fields.accepted(name))
+      ScriptState::of(L).notice(fmt::format("{}: {} is accepted and changes nothing", where(L), name));
+}
+
+int define_simulation_parameters(lua_State* L) {
+  ScriptState& state = ScriptState::of(L);
+  if (state.simulation != nullptr) raise(L, "defineSimulationParameters: the simulation runs already; call it while the scene is built");
+  SimulationParameters& p = state.scene.parameters;
+  Fields fields(L, 1, "defineSimulationParameters");
+  p.timestep = fields.positive("timestep").value_or(p.timestep);
+  p.gravity = fields.vector("gravity").value_or(p.gravity);
+  if (const auto seed = fields.number("seed")) {
+    if (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed)) raise(L, "seed is {:g} but must be a whole number from 0 to 2^53", *seed);
+    if (!state.options.seed) p.seed = static_cast<std::uint64_t>(*seed);
+  }
+  if (const auto duration = fields.positive("duration")) p.duration = duration;
+  p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
+  if (const auto name = fields.text("integrator")) p.integrator = integrator_named(L, *name);
+  if (const auto name = fields.text("hybrid")) p.hybrid = hybrid_named(L, "hybrid", *name);
+  p.max_stiffness = fields.positive("maxStiffness").value_or(p.max_stiffness);
+  p.max_angular_stiffness = fields.positive("maxAngularStiffness").value_or(p.max_angular_stiffness);
+  p.all_bodies_are_dynamic = fields.boolean("allBodiesAreDynamic").value_or(p.all_bodies_are_dynamic);
+  p.contact_stiffness = fields.positive("contactStiffness").value_or(p.contact_stiffness);
+  if (const auto ratio = fields.number("contactDampingRatio")) {
+    if (*ratio < 0) raise(L, "contactDampingRatio is {:g} but must not be negative", *ratio);
+    p.contact_damping_ratio = *ratio;
+  }
+  state.scene.grasp_distance = fields.positive("graspDistance").value_or(state.scene.grasp_distance);
+  if (const auto contact = fields.text("contact"); contact && *contact != "voxmap")
+    raise(L, "contact is '{}' but this version knows 'voxmap' only", *contact);
+  accept_without_effect(L, fields, {"limitCouplerDampingForce", "precision", "parts"});
+  fields.finish(false);
+  return 0;
+}
+
+// A name becomes a folder of the run file and a side of 'A~B'.
+void check_name(lua_State* L, const std::string& name) {
+  const bool spoiled = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '~'; });
+  if (name.empty() || name == "." || spoiled)
+    raise(L, "addObject: name is '{}' but must not be empty or '.', nor contain '/', '~' or control characters", name);
+}
+
+bool name_taken(const Scene& scene, const std::string& name) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodyDescription& b) { return b.name == name; });
+}
+
+std::string free_name(const Scene& scene, const std::string& stem) {
+  const std::string base = stem.empty() ? "body" : stem;
+  std::string name = stem.empty() ? "body1" : stem;
+  for (int i = 2; name_taken(scene, name); ++i) name = fmt::format("{}{}", base, i);
+  return name;
+}
+
+double extent_of(const BodyDescription& body) {
+  Bounds bounds;
+  for (const Part& part : body.parts) {
+    const Bounds of_part = bounds_of(part.mesh);
+    bounds.include(of_part.min);
+    bounds.include(of_part.max);
+  }
+  return bounds.size().maxCoeff();
+}
+
+void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::string& stem) {
+  ScriptState& state = ScriptState::of(L);
+  std::vector<std::shared_ptr<Node>> nodes;
+  for (int i = 1; i <= fields.children(); ++i) {
+    fields.push_child(i);
+    nodes.push_back(get<std::shared_ptr<Node>>(L, lua_gettop(L), fmt::format("addObject: child {}", i)));
+    lua_pop(L, 1);
+  }
+  PlacedParts placed_parts = resolve(nodes, state.inputs);
+  body.parts = std::move(placed_parts.parts);
+  body.X_WB = body.X_WB * placed_parts.pose;
+  stem = placed_parts.stem;
+  for (const Part& part : body.parts) {
+    for (const std::string& note : part.notes) state.notice(fmt::format("{}: {}: {}", where(L), part.name, note));
+    for (const std::string& question : questions_about(part)) state.notice(fmt::format("{}: {}", where(L), question));
+  }
+}
+
+void read_hybrid(lua_State* L, Fields& fields, BodyDescription& body) {
+  if (!fields.push("hybrid")) return;
+  if (lua_type(L, -1) == LUA_TBOOLEAN)
+    body.hybrid = lua_toboolean(L, -1) != 0 ? Hybrid::restore : Hybrid::off;
+  else
+    body.hybrid = hybrid_named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"));
+  lua_pop(L, 1);
+}
+
+int add_object(lua_State* L) {
+  ScriptState& state = ScriptState::of(L);
+  if (state.simulation != nullptr) raise(L, "addObject: the simulation runs already; add objects while the scene is built");
+  Fields fields(L, 1, "addObject");
+  BodyDescription body;
+  const auto name = fields.text("name");
+  if (name) check_name(L, *name);
+  if (name && name_taken(state.scene, *name)) raise(L, "addObject: there is a body '{}' already; give each its own name", *name);
+  body.X_WB.position = fields.vector("position").value_or(Vector3d::Zero());
+  body.X_WB.rotation = fields.rotation("orientation").value_or(Quaterniond::Identity());
+  body.density = fields.positive("density").value_or(body.density);
+  const double voxel_size = fields.number("voxelsize", kUsualVoxelSize);
+  body.point_spacing = fields.positive("pointspacing").value_or(0);
+  body.use_brep = fields.boolean("brep").value_or(true);
+  body.fixed = fields.boolean("fixed").value_or(false);
+  body.selectable = fields.boolean("selectable").value_or(!body.fixed);
+  read_hybrid(L, fields, body);
+  body.twist.linear = fields.vector("velocity").value_or(Vector3d::Zero());
+  body.twist.angular = fields.vector("angularVelocity").value_or(Vector3d::Zero());
+  fields.finish(true);
+
+  std::string stem;
+  read_geometry(L, fields, body, stem);
+  body.name = name ? *name : free_name(state.scene, stem);
+  if (!(voxel_size > 0))
+    raise(L, "voxelsize is {:g} m but must be above 0; '{}' measures {:g} m, mm({:g}) is usual", voxel_size, body.name,
+          extent_of(body), kUsualVoxelSize * 1000);
+  body.voxel_size = voxel_size;
+
+  double volume = 0;
+  for (const Part& part : body.parts) volume += part.mass.volume;
+  state.masses.push_back(volume * body.density);
+  state.scene.bodies.push_back(std::move(body));
+  push(L, BodyHandle{state.scene.bodies.size() - 1});
+  return 1;
+}
+
+}  // namespace
+
+void add_scene_words(lua_State* L) {
+  set_global<define_simulation_parameters>(L, "defineSimulationParameters");
+  set_global<add_object>(L, "addObject");
+}
+
+}  // namespace verisim::script
