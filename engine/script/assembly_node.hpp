@@ -1,5 +1,5 @@
-// The tree that a script builds below addObject: models, solids, and placements of them; and how it becomes the parts of
-// one body.
+// The tree that a script builds below addObject: models, solids, and placements of them; and how it becomes the parts
+// of one body.
 //
 // Body coordinates. Scales are baked into the geometry. If all leaves of a child have one placement (the usual
 // Transform{…, Model "f.step"}), that placement belongs to the start pose and the body's coordinates are those of the
@@ -19,9 +19,9 @@ struct Node {
   enum class Kind { model, solid, group };
   Kind kind = Kind::group;
   // model
-  std::string file;        ///< as Inputs knows it
-  int part = 0;            ///< 1 … n: this solid of the file alone; 0: all
-  double file_scale = 1;   ///< Model{ scale= }
+  std::string file;       ///< as Inputs knows it
+  int part = 0;           ///< 1 … n: this solid of the file alone; 0: all
+  double file_scale = 1;  ///< Model{ scale= }
   // solid
   std::shared_ptr<const Solid> solid;
   // group: similarity x -> pose * (scale x)
@@ -36,7 +36,8 @@ struct PlacedParts {
   std::string stem;         ///< file name without folder and extension of the first model; empty for solids
 };
 
-/// Loads the leaves below `nodes`. Error(input): from loading; nothing in it; a part number that the file does not have.
+/// Loads the leaves below `nodes`. Error(input): from loading; nothing in it; a part number that the file does not
+/// have.
 [[nodiscard]] PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs);
 
 /// The parts of a model file, with the scale's meaning of LoadOptions.

@@ -1,5 +1,5 @@
-// Frame actions: functions of a script that live on while the simulation runs, each in its own coroutine, resumed once a
-// script frame (VR JuggLua's Actions).
+// Frame actions: functions of a script that live on while the simulation runs, each in its own coroutine, resumed once
+// a script frame (VR JuggLua's Actions).
 //
 // Promises: actions run in the order of adding. One that was added inside an action first runs in the next frame, just
 // ahead of the one that added it. The first resume passes dt; it happens at the next update, never when adding.

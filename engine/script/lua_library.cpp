@@ -30,7 +30,9 @@ int next_key(lua_State* L) {
   if (lua_isnil(L, 2)) {
     Sandbox::of(L).charge(L, 1);
     if (has_object_keys(L, 1))
-      raise(L, "next() over a table whose keys are tables or functions has no order that is the same in every run; use pairs()");
+      raise(L,
+            "next() over a table whose keys are tables or functions has no order that is the same in every run; use "
+            "pairs()");
   }
   return lua_next(L, 1) != 0 ? 2 : (lua_pushnil(L), 1);
 }
@@ -54,7 +56,9 @@ struct OrderedKey {
 OrderedKey ordered_key(lua_State* L, int index, int position) {
   OrderedKey key{.rank = 0, .number = 0, .text = {}, .order = 0, .position = position};
   switch (lua_type(L, index)) {
-    case LUA_TNUMBER: key.number = lua_tonumber(L, index); break;
+    case LUA_TNUMBER:
+      key.number = lua_tonumber(L, index);
+      break;
     case LUA_TSTRING: {
       std::size_t size = 0;
       const char* data = lua_tolstring(L, index, &size);

@@ -22,21 +22,41 @@ double sinh_small(double x) {
 double hyperbolic_sine(double x) {
   return std::abs(x) < 1 ? sinh_small(x) : 0.5 * (pinned::exp(x) - pinned::exp(-x));
 }
-double hyperbolic_cosine(double x) { return 0.5 * (pinned::exp(x) + pinned::exp(-x)); }
+double hyperbolic_cosine(double x) {
+  return 0.5 * (pinned::exp(x) + pinned::exp(-x));
+}
 
 }  // namespace
 
 extern "C" {
 
-double verisim_lua_sin(double x) { return pinned::sin(x); }
-double verisim_lua_cos(double x) { return pinned::cos(x); }
-double verisim_lua_tan(double x) { return pinned::tan(x); }
-double verisim_lua_asin(double x) { return pinned::asin(x); }
-double verisim_lua_acos(double x) { return pinned::acos(x); }
-double verisim_lua_atan(double x) { return pinned::atan2(x, 1); }
-double verisim_lua_atan2(double y, double x) { return pinned::atan2(y, x); }
-double verisim_lua_exp(double x) { return pinned::exp(x); }
-double verisim_lua_log(double x) { return pinned::log(x); }
+double verisim_lua_sin(double x) {
+  return pinned::sin(x);
+}
+double verisim_lua_cos(double x) {
+  return pinned::cos(x);
+}
+double verisim_lua_tan(double x) {
+  return pinned::tan(x);
+}
+double verisim_lua_asin(double x) {
+  return pinned::asin(x);
+}
+double verisim_lua_acos(double x) {
+  return pinned::acos(x);
+}
+double verisim_lua_atan(double x) {
+  return pinned::atan2(x, 1);
+}
+double verisim_lua_atan2(double y, double x) {
+  return pinned::atan2(y, x);
+}
+double verisim_lua_exp(double x) {
+  return pinned::exp(x);
+}
+double verisim_lua_log(double x) {
+  return pinned::log(x);
+}
 
 double verisim_lua_log10(double x) {
   constexpr double kLog10OfE = 0.43429448190325182765;
@@ -45,15 +65,23 @@ double verisim_lua_log10(double x) {
   return std::abs(result - whole) < 1e-12 && pinned::pow(10, whole) == x ? whole : result;
 }
 
-double verisim_lua_pow(double x, double y) { return y == 2 ? x * x : pinned::pow(x, y); }
-double verisim_lua_sinh(double x) { return hyperbolic_sine(x); }
-double verisim_lua_cosh(double x) { return hyperbolic_cosine(x); }
+double verisim_lua_pow(double x, double y) {
+  return y == 2 ? x * x : pinned::pow(x, y);
+}
+double verisim_lua_sinh(double x) {
+  return hyperbolic_sine(x);
+}
+double verisim_lua_cosh(double x) {
+  return hyperbolic_cosine(x);
+}
 
 double verisim_lua_tanh(double x) {
   if (std::abs(x) > 20) return x > 0 ? 1 : -1;  // 1 - tanh(20) < 2^-53
   return hyperbolic_sine(x) / hyperbolic_cosine(x);
 }
 
-int verisim_lua_strcoll(const char* a, const char* b) { return std::strcmp(a, b); }
+int verisim_lua_strcoll(const char* a, const char* b) {
+  return std::strcmp(a, b);
+}
 
 }  // extern "C"

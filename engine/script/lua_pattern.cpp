@@ -13,17 +13,38 @@ constexpr std::ptrdiff_t kNoMatch = -1;
 bool class_matches(unsigned char c, unsigned char letter) {
   bool member = false;
   switch (std::tolower(letter)) {
-    case 'a': member = std::isalpha(c) != 0; break;
-    case 'c': member = std::iscntrl(c) != 0; break;
-    case 'd': member = std::isdigit(c) != 0; break;
-    case 'l': member = std::islower(c) != 0; break;
-    case 'p': member = std::ispunct(c) != 0; break;
-    case 's': member = std::isspace(c) != 0; break;
-    case 'u': member = std::isupper(c) != 0; break;
-    case 'w': member = std::isalnum(c) != 0; break;
-    case 'x': member = std::isxdigit(c) != 0; break;
-    case 'z': member = c == 0; break;
-    default: return letter == c;
+    case 'a':
+      member = std::isalpha(c) != 0;
+      break;
+    case 'c':
+      member = std::iscntrl(c) != 0;
+      break;
+    case 'd':
+      member = std::isdigit(c) != 0;
+      break;
+    case 'l':
+      member = std::islower(c) != 0;
+      break;
+    case 'p':
+      member = std::ispunct(c) != 0;
+      break;
+    case 's':
+      member = std::isspace(c) != 0;
+      break;
+    case 'u':
+      member = std::isupper(c) != 0;
+      break;
+    case 'w':
+      member = std::isalnum(c) != 0;
+      break;
+    case 'x':
+      member = std::isxdigit(c) != 0;
+      break;
+    case 'z':
+      member = c == 0;
+      break;
+    default:
+      return letter == c;
   }
   return std::isupper(letter) != 0 ? !member : member;
 }
@@ -31,7 +52,10 @@ bool class_matches(unsigned char c, unsigned char letter) {
 }  // namespace
 
 PatternMatcher::PatternMatcher(std::string_view subject, std::string_view pattern, std::uint64_t steps_max)
-    : subject_(subject), pattern_(pattern), anchored_(!pattern.empty() && pattern.front() == '^'), steps_max_(steps_max) {
+    : subject_(subject),
+      pattern_(pattern),
+      anchored_(!pattern.empty() && pattern.front() == '^'),
+      steps_max_(steps_max) {
   if (anchored_) pattern_.remove_prefix(1);
 }
 
@@ -43,7 +67,8 @@ std::ptrdiff_t PatternMatcher::match_at(std::ptrdiff_t start) {
 
 void PatternMatcher::step() {
   if (++steps_ > steps_max_)
-    fail(ErrorKind::input, "the pattern '{}' takes more than {} steps on a text of {} bytes; make it simpler or the text shorter",
+    fail(ErrorKind::input,
+         "the pattern '{}' takes more than {} steps on a text of {} bytes; make it simpler or the text shorter",
          pattern_.substr(0, 40), steps_max_, subject_.size());
 }
 
@@ -85,10 +110,14 @@ bool PatternMatcher::item_matches(std::ptrdiff_t s, std::size_t p, std::size_t e
   if (s >= static_cast<std::ptrdiff_t>(subject_.size())) return false;
   const auto c = static_cast<unsigned char>(subject_[static_cast<std::size_t>(s)]);
   switch (pattern_[p]) {
-    case '.': return true;
-    case '%': return class_matches(c, static_cast<unsigned char>(pattern_[p + 1]));
-    case '[': return set_matches(c, p, end - 1);
-    default: return static_cast<unsigned char>(pattern_[p]) == c;
+    case '.':
+      return true;
+    case '%':
+      return class_matches(c, static_cast<unsigned char>(pattern_[p + 1]));
+    case '[':
+      return set_matches(c, p, end - 1);
+    default:
+      return static_cast<unsigned char>(pattern_[p]) == c;
   }
 }
 
@@ -103,7 +132,8 @@ std::ptrdiff_t PatternMatcher::match(std::ptrdiff_t s, std::size_t p) {
     const char letter = pattern_[p];
     if (letter == '(') return match_capture_start(s, p);
     if (letter == ')') return match_capture_end(s, p);
-    if (letter == '$' && p + 1 == pattern_.size()) return s == static_cast<std::ptrdiff_t>(subject_.size()) ? s : kNoMatch;
+    if (letter == '$' && p + 1 == pattern_.size())
+      return s == static_cast<std::ptrdiff_t>(subject_.size()) ? s : kNoMatch;
     if (letter == '%' && p + 1 < pattern_.size()) {
       const char second = pattern_[p + 1];
       if (second == 'b') return match_balanced(s, p);
@@ -129,9 +159,12 @@ std::ptrdiff_t PatternMatcher::match_quantified(std::ptrdiff_t s, std::size_t p,
       }
       return match(s, end + 1);
     }
-    case '+': return item_matches(s, p, end) ? match_greedy(s + 1, p, end) : kNoMatch;
-    case '*': return match_greedy(s, p, end);
-    default: return match_shortest(s, p, end);
+    case '+':
+      return item_matches(s, p, end) ? match_greedy(s + 1, p, end) : kNoMatch;
+    case '*':
+      return match_greedy(s, p, end);
+    default:
+      return match_shortest(s, p, end);
   }
 }
 
@@ -165,7 +198,8 @@ std::ptrdiff_t PatternMatcher::match_capture_start(std::ptrdiff_t s, std::size_t
 }
 
 std::ptrdiff_t PatternMatcher::match_capture_end(std::ptrdiff_t s, std::size_t p) {
-  const auto open = std::find_if(captures_.rbegin(), captures_.rend(), [](const Capture& c) { return c.length == kUnclosed; });
+  const auto open =
+      std::find_if(captures_.rbegin(), captures_.rend(), [](const Capture& c) { return c.length == kUnclosed; });
   if (open == captures_.rend()) fail(ErrorKind::input, "malformed pattern (')' without '(')");
   const auto level = static_cast<std::size_t>(captures_.rend() - open) - 1;
   captures_[level].length = s - captures_[level].start;
@@ -194,7 +228,8 @@ std::ptrdiff_t PatternMatcher::match_balanced(std::ptrdiff_t s, std::size_t p) {
 }
 
 std::ptrdiff_t PatternMatcher::match_frontier(std::ptrdiff_t s, std::size_t p) {
-  if (p + 2 >= pattern_.size() || pattern_[p + 2] != '[') fail(ErrorKind::input, "malformed pattern (missing '[' after '%f')");
+  if (p + 2 >= pattern_.size() || pattern_[p + 2] != '[')
+    fail(ErrorKind::input, "malformed pattern (missing '[' after '%f')");
   const std::size_t end = item_end(p + 2);
   const auto at = [&](std::ptrdiff_t i) {
     return i < 0 || i >= static_cast<std::ptrdiff_t>(subject_.size())
@@ -213,7 +248,8 @@ std::ptrdiff_t PatternMatcher::match_back_reference(std::ptrdiff_t s, std::size_
   const std::ptrdiff_t length = std::max<std::ptrdiff_t>(capture.length, 0);
   steps_ += static_cast<std::uint64_t>(length) / 8;
   if (static_cast<std::ptrdiff_t>(subject_.size()) - s < length) return kNoMatch;
-  const std::string_view wanted = subject_.substr(static_cast<std::size_t>(capture.start), static_cast<std::size_t>(length));
+  const std::string_view wanted =
+      subject_.substr(static_cast<std::size_t>(capture.start), static_cast<std::size_t>(length));
   if (subject_.substr(static_cast<std::size_t>(s), static_cast<std::size_t>(length)) != wanted) return kNoMatch;
   return match(s + length, p + 2);
 }

@@ -20,7 +20,9 @@ std::string_view text_at(lua_State* L, int index) {
   return {data, size};
 }
 
-void push_text(lua_State* L, std::string_view text) { lua_pushlstring(L, text.data(), text.size()); }
+void push_text(lua_State* L, std::string_view text) {
+  lua_pushlstring(L, text.data(), text.size());
+}
 
 // Where a search begins: positions count from 1, negative ones from the end.
 std::ptrdiff_t start_offset(lua_State* L, int index, std::size_t size) {
@@ -82,7 +84,8 @@ int find_or_match(lua_State* L, bool find) {
   const std::string_view subject = text_at(L, 1);
   const std::string_view pattern = text_at(L, 2);
   const std::ptrdiff_t from = start_offset(L, 3, subject.size());
-  const bool plain = find && (lua_toboolean(L, 4) != 0 || pattern.find_first_of("^$*+?.([%-") == std::string_view::npos);
+  const bool plain =
+      find && (lua_toboolean(L, 4) != 0 || pattern.find_first_of("^$*+?.([%-") == std::string_view::npos);
   if (plain) return find_plainly(L, subject, pattern, from);
   PatternMatcher matcher(subject, pattern, kStepsMax);
   const Found found = search(matcher, subject, from);
@@ -97,8 +100,12 @@ int find_or_match(lua_State* L, bool find) {
   return 2 + (matcher.captures().empty() ? 0 : push_captures(L, subject, matcher, found.start, found.end));
 }
 
-int find(lua_State* L) { return find_or_match(L, true); }
-int match(lua_State* L) { return find_or_match(L, false); }
+int find(lua_State* L) {
+  return find_or_match(L, true);
+}
+int match(lua_State* L) {
+  return find_or_match(L, false);
+}
 
 // Upvalues: subject, pattern, offset at which the next search begins.
 int next_match(lua_State* L) {
@@ -125,7 +132,8 @@ int gmatch(lua_State* L) {
 }
 
 // Adds what stands for one match: a text with %0 … %9, or the result of a look-up or call.
-void add_replacement(lua_State* L, std::string& result, std::string_view subject, const PatternMatcher& matcher, Found found) {
+void add_replacement(lua_State* L, std::string& result, std::string_view subject, const PatternMatcher& matcher,
+                     Found found) {
   const int top = lua_gettop(L);
   const std::string_view whole =
       subject.substr(static_cast<std::size_t>(found.start), static_cast<std::size_t>(found.end - found.start));
@@ -193,9 +201,12 @@ int gsub(lua_State* L) {
       constexpr std::size_t kLongest = std::size_t{64} << 20;
       if (result.size() > kLongest) raise(L, "string.gsub: the result is longer than 64 MiB");
     }
-    if (end > s) s = end;
-    else if (s < size) result += subject[static_cast<std::size_t>(s++)];
-    else break;
+    if (end > s)
+      s = end;
+    else if (s < size)
+      result += subject[static_cast<std::size_t>(s++)];
+    else
+      break;
     if (matcher.anchored()) break;
   }
   if (s < size) result += subject.substr(static_cast<std::size_t>(s));

@@ -9,8 +9,8 @@
 namespace verisim::script {
 namespace {
 
-constexpr int kHookInterval = 1000;          // instructions between two looks at the allowance
-constexpr std::size_t kBytesPerUnit = 64;    // memory moved in about the time of one instruction
+constexpr int kHookInterval = 1000;        // instructions between two looks at the allowance
+constexpr std::size_t kBytesPerUnit = 64;  // memory moved in about the time of one instruction
 constexpr std::size_t kMebibyte = std::size_t{1} << 20;
 
 std::string global_suggestion(lua_State* L, const std::string& text) {
@@ -73,7 +73,8 @@ struct Sandbox::BlockHeader {
 Sandbox::Sandbox(std::string name, std::size_t memory_limit) : name_(std::move(name)), memory_limit_(memory_limit) {
   static_assert(sizeof(BlockHeader) == 16);
   lua_ = lua_newstate(&Sandbox::allocate, this);
-  if (lua_ == nullptr) fail(ErrorKind::input, "{}: the memory limit of {} bytes is too small for Lua itself", name_, memory_limit_);
+  if (lua_ == nullptr)
+    fail(ErrorKind::input, "{}: the memory limit of {} bytes is too small for Lua itself", name_, memory_limit_);
   const auto* content = static_cast<const std::byte*>(lua_newuserdata(lua_, 1));
   userdata_offset_ = static_cast<std::size_t>(content - static_cast<const std::byte*>(newest_block_));
   lua_pop(lua_, 1);
@@ -133,7 +134,8 @@ void Sandbox::raise_spent(lua_State* L) {
   // is caught at its own next look.
   spent_ = true;
   lua_sethook(L, &Sandbox::count_hook, LUA_MASKCOUNT, 1);
-  raise(L, "the script has run for {} instructions without coming to an end; look for a loop that never ends", work_limit_);
+  raise(L, "the script has run for {} instructions without coming to an end; look for a loop that never ends",
+        work_limit_);
 }
 
 void Sandbox::count_hook(lua_State* L, lua_Debug*) {
@@ -184,8 +186,9 @@ Sandbox::Resumed Sandbox::resume(lua_State* thread, int arguments, LuaFailure& f
 LuaFailure Sandbox::take_failure(lua_State* L, int status) {
   LuaFailure failure;
   if (status == LUA_ERRMEM) {
-    failure.text = fmt::format("{}: the script needs more than {} MiB of memory; look for a table or text that grows without end",
-                               memory_where_.empty() ? name_ : memory_where_, memory_limit_ / kMebibyte);
+    failure.text =
+        fmt::format("{}: the script needs more than {} MiB of memory; look for a table or text that grows without end",
+                    memory_where_.empty() ? name_ : memory_where_, memory_limit_ / kMebibyte);
   } else if (lua_type(L, -1) == LUA_TSTRING) {
     failure.text = lua_tostring(L, -1);
   } else {
@@ -204,7 +207,9 @@ Sandbox::BlockHeader* Sandbox::header_of(lua_State* L, int index) const {
   return reinterpret_cast<BlockHeader*>(block - sizeof(BlockHeader));
 }
 
-std::uint64_t Sandbox::creation_order(lua_State* L, int index) const { return header_of(L, index)->order; }
+std::uint64_t Sandbox::creation_order(lua_State* L, int index) const {
+  return header_of(L, index)->order;
+}
 
 std::uint32_t Sandbox::shown_number(lua_State* L, int index) {
   BlockHeader* header = header_of(L, index);

@@ -1,8 +1,8 @@
 // One Lua 5.1 interpreter that can do nothing but compute: bounded in memory and in work, without files, clocks,
 // addresses or anything else that differs between two runs.
 //
-// Lua is linked as C++ (its errors are exceptions): a function called from Lua may hold objects with destructors when it
-// raises. Only engine/script includes Lua's headers.
+// Lua is linked as C++ (its errors are exceptions): a function called from Lua may hold objects with destructors when
+// it raises. Only engine/script includes Lua's headers.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,8 @@
 
 namespace verisim::script {
 
-/// What kept a chunk or a call from coming to its end. `text` is one line that begins with FILE:LINE where that is known.
+/// What kept a chunk or a call from coming to its end. `text` is one line that begins with FILE:LINE where that is
+/// known.
 struct LuaFailure {
   std::string text;
 };
@@ -57,10 +58,10 @@ class Sandbox {
 
   // What the standard library needs from outside.
   virtual void print(const std::string& line) = 0;
-  [[nodiscard]] virtual double clock() const = 0;             ///< simulated time, s
-  [[nodiscard]] virtual double random() = 0;                  ///< next of the run's stream, in [0, 1)
-  virtual void seed_random(double seed) = 0;                  ///< begins another stream of the run's seed
-  virtual void stop() = 0;                                    ///< os.exit
+  [[nodiscard]] virtual double clock() const = 0;  ///< simulated time, s
+  [[nodiscard]] virtual double random() = 0;       ///< next of the run's stream, in [0, 1)
+  virtual void seed_random(double seed) = 0;       ///< begins another stream of the run's seed
+  virtual void stop() = 0;                         ///< os.exit
 
  private:
   struct BlockHeader;

@@ -29,11 +29,23 @@ Scene Scenario::take_scene() {
   return implementation_->state.scene;  // a copy: the words go on reading names, densities and rates
 }
 
-void Scenario::attach(Simulation& simulation) { implementation_->state.attach(simulation); }
-std::string Scenario::parameters_json() const { return implementation_->state.parameters_json; }
-const std::string& Scenario::outcome() const { return implementation_->state.outcome; }
-bool Scenario::finished() const { return implementation_->state.finished; }
-const std::vector<Measure>& Scenario::measures() const { return implementation_->state.measures; }
-std::vector<std::string> Scenario::notices() const { return implementation_->state.notices; }
+void Scenario::attach(Simulation& simulation) {
+  implementation_->state.attach(simulation);
+}
+std::string Scenario::parameters_json() const {
+  return implementation_->state.parameters_json;
+}
+const std::string& Scenario::outcome() const {
+  return implementation_->state.outcome;
+}
+bool Scenario::finished() const {
+  return implementation_->state.finished;
+}
+const std::vector<Measure>& Scenario::measures() const {
+  return implementation_->state.measures;
+}
+std::vector<std::string> Scenario::notices() const {
+  return implementation_->state.notices;
+}
 
 }  // namespace verisim

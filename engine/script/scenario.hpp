@@ -15,13 +15,14 @@
 namespace verisim {
 
 struct ScenarioOptions {
-  std::string path;                                         ///< of the script, as the command line gives it
-  std::vector<std::pair<std::string, std::string>> sets;    ///< --set KEY=VALUE: VALUE is a Lua expression; a bare word is a string
-  std::vector<std::pair<std::string, std::string>> binds;   ///< --bind NAME=SOURCE
-  std::optional<std::uint64_t> seed;                        ///< --seed, --duration win over the script
+  std::string path;  ///< of the script, as the command line gives it
+  std::vector<std::pair<std::string, std::string>>
+      sets;  ///< --set KEY=VALUE: VALUE is a Lua expression; a bare word is a string
+  std::vector<std::pair<std::string, std::string>> binds;  ///< --bind NAME=SOURCE
+  std::optional<std::uint64_t> seed;                       ///< --seed, --duration win over the script
   std::optional<double> duration;
-  std::size_t memory_limit = std::size_t{256} << 20;        ///< bytes of Lua memory
-  std::uint64_t instruction_limit = 200'000'000;            ///< while building; and per script frame 10'000'000
+  std::size_t memory_limit = std::size_t{256} << 20;  ///< bytes of Lua memory
+  std::uint64_t instruction_limit = 200'000'000;      ///< while building; and per script frame 10'000'000
 };
 
 /// A value measured by the script: measure(name, value, unit).
@@ -33,8 +34,8 @@ struct Measure {
 
 class Scenario {
  public:
-  /// Runs the script: builds the scene. Error(input) with file and line for a script error, unknown parameter (lists them,
-  /// suggests the nearest), time or memory limit, a file outside the scenario's folder.
+  /// Runs the script: builds the scene. Error(input) with file and line for a script error, unknown parameter (lists
+  /// them, suggests the nearest), time or memory limit, a file outside the scenario's folder.
   Scenario(const ScenarioOptions& options, Inputs& inputs);
   ~Scenario();
 
@@ -43,9 +44,9 @@ class Scenario {
   /// Binds the script's objects to the running simulation and registers its frame clock (60 Hz of simulated time).
   void attach(Simulation& simulation);
 
-  [[nodiscard]] std::string parameters_json() const;   ///< all params{} as resolved
-  [[nodiscard]] const std::string& outcome() const;    ///< outcome("…"); empty if none was said
-  [[nodiscard]] bool finished() const;                 ///< the script asked to stop (outcome with stop, simulation:stop())
+  [[nodiscard]] std::string parameters_json() const;  ///< all params{} as resolved
+  [[nodiscard]] const std::string& outcome() const;   ///< outcome("…"); empty if none was said
+  [[nodiscard]] bool finished() const;  ///< the script asked to stop (outcome with stop, simulation:stop())
   [[nodiscard]] const std::vector<Measure>& measures() const;
   [[nodiscard]] std::vector<std::string> notices() const;  ///< questioned or ignored things, each once
 

@@ -17,7 +17,8 @@ std::string file_name_of(const std::string& path) {
 /// The hardware or source at the inner end of a chain of filters: it carries the name.
 DeviceNode& innermost(DeviceNode& node) {
   DeviceNode* at = &node;
-  while ((at->kind == DeviceNode::Kind::scale || at->kind == DeviceNode::Kind::translate) && at->inner) at = at->inner.get();
+  while ((at->kind == DeviceNode::Kind::scale || at->kind == DeviceNode::Kind::translate) && at->inner)
+    at = at->inner.get();
   return *at;
 }
 
@@ -26,13 +27,17 @@ std::shared_ptr<Device> make_device(DeviceNode& node, std::uint64_t seed) {
   const std::shared_ptr<Device> inner = node.inner ? make_device(*node.inner, seed) : nullptr;
   node.device = at_place(node.place, [&]() -> std::shared_ptr<Device> {
     switch (node.kind) {
-      case DeviceNode::Kind::hardware: return make_hardware(node.hardware, inner);
-      case DeviceNode::Kind::replay: return make_replay(node.name, node.samples);
+      case DeviceNode::Kind::hardware:
+        return make_hardware(node.hardware, inner);
+      case DeviceNode::Kind::replay:
+        return make_replay(node.name, node.samples);
       case DeviceNode::Kind::hand:
         if (!node.own_seed) node.hand.seed = seed;
         return make_hand(node.hand);
-      case DeviceNode::Kind::scale: return make_scale(inner, node.factor);
-      case DeviceNode::Kind::translate: return make_translate(inner, node.translation);
+      case DeviceNode::Kind::scale:
+        return make_scale(inner, node.factor);
+      case DeviceNode::Kind::translate:
+        return make_translate(inner, node.translation);
     }
     return nullptr;
   });
@@ -85,7 +90,8 @@ void ScriptState::finish() {
 void ScriptState::check_sets() const {
   if (options.sets.empty() || parameters_place) return;  // params{} itself checks against what it declares
   const auto& [key, value] = options.sets.front();
-  fail(ErrorKind::input, "--set {}={}: {} declares no parameters; add params{{ {} = … }} to it", key, value, name(), key);
+  fail(ErrorKind::input, "--set {}={}: {} declares no parameters; add params{{ {} = … }} to it", key, value, name(),
+       key);
 }
 
 void ScriptState::name_devices() {
@@ -100,7 +106,7 @@ void ScriptState::name_devices() {
   for (const auto& device : devices) {
     DeviceNode& node = innermost(*device);
     if (node.name.empty()) {
-      const std::string base = node.kind == DeviceNode::Kind::hand       ? "hand"
+      const std::string base = node.kind == DeviceNode::Kind::hand     ? "hand"
                                : node.kind == DeviceNode::Kind::replay ? "replay"
                                                                        : node.hardware.name;
       node.name = base;
@@ -124,10 +130,12 @@ void ScriptState::bind_devices() {
   for (const auto& [wanted, source] : options.binds) {
     const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
-      fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted, suggestion(wanted, names));
+      fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted,
+           suggestion(wanted, names));
     DeviceNode& node = innermost(*devices[static_cast<std::size_t>(found - names.begin())]);
     if (node.kind != DeviceNode::Kind::hardware)
-      fail(ErrorKind::input, "--bind {}={}: '{}' is driven by the scenario itself; bind a device of Devices.Sensable or Devices.Haption",
+      fail(ErrorKind::input,
+           "--bind {}={}: '{}' is driven by the scenario itself; bind a device of Devices.Sensable or Devices.Haption",
            wanted, source, wanted);
     at_place(fmt::format("--bind {}={}", wanted, source), [&, bound = source] {
       drive(*node.device, make_replay(node.name, read_samples(inputs, bound, TraceLimits{}.max_gap, false)));
@@ -188,7 +196,9 @@ void ScriptState::print(const std::string& line) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-double ScriptState::random() { return RandomStream(scene.parameters.seed, random_name_).uniform(randoms_drawn_++); }
+double ScriptState::random() {
+  return RandomStream(scene.parameters.seed, random_name_).uniform(randoms_drawn_++);
+}
 
 void ScriptState::seed_random(double seed) {
   random_name_ = fmt::format("script {}", seed);

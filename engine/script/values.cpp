@@ -8,11 +8,16 @@ namespace verisim::script {
 std::string described(lua_State* L, int index) {
   switch (lua_type(L, index)) {
     case LUA_TNONE:
-    case LUA_TNIL: return "nothing";
-    case LUA_TBOOLEAN: return lua_toboolean(L, index) != 0 ? "true" : "false";
-    case LUA_TNUMBER: return fmt::format("{:g}", lua_tonumber(L, index));
-    case LUA_TSTRING: return fmt::format("a text ('{}')", std::string(lua_tostring(L, index)).substr(0, 40));
-    default: break;
+    case LUA_TNIL:
+      return "nothing";
+    case LUA_TBOOLEAN:
+      return lua_toboolean(L, index) != 0 ? "true" : "false";
+    case LUA_TNUMBER:
+      return fmt::format("{:g}", lua_tonumber(L, index));
+    case LUA_TSTRING:
+      return fmt::format("a text ('{}')", std::string(lua_tostring(L, index)).substr(0, 40));
+    default:
+      break;
   }
   if (lua_getmetatable(L, index) != 0) {
     lua_getfield(L, -1, "__metatable");
@@ -76,17 +81,21 @@ Quaterniond rotation_at(lua_State* L, int index, const std::string& what) {
     numbers_of_table(L, index, what, "a rotation: AngleAxis(angle, Axis{x, y, z}), an osg.Quat or {x, y, z, w}",
                      rotation.coeffs().data(), 4);
   const double length = rotation.norm();
-  if (!(length > 1e-12) || !std::isfinite(length)) raise(L, "{} is a quaternion of length {}: no rotation", what, length);
+  if (!(length > 1e-12) || !std::isfinite(length))
+    raise(L, "{} is a quaternion of length {}: no rotation", what, length);
   return rotation.normalized();
 }
 
-void push_text(lua_State* L, const std::string& text) { lua_pushlstring(L, text.data(), text.size()); }
+void push_text(lua_State* L, const std::string& text) {
+  lua_pushlstring(L, text.data(), text.size());
+}
 
 std::string suggestion(const std::string& name, std::vector<std::string> known) {
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   const std::string nearest = nearest_name(name, known);
-  return fmt::format("{} ({})", nearest.empty() ? ";" : fmt::format("; did you mean '{}'?", nearest), fmt::join(known, ", "));
+  return fmt::format("{} ({})", nearest.empty() ? ";" : fmt::format("; did you mean '{}'?", nearest),
+                     fmt::join(known, ", "));
 }
 
 Fields::Fields(lua_State* L, int index, std::string word) : L_(L), index_(index), word_(std::move(word)) {

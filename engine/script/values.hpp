@@ -92,6 +92,10 @@ T* get_if(lua_State* L, int index) {
   return same ? detail::aligned<T>(block) : nullptr;
 }
 
+/// osg.Matrix of a placement, and the placement in a matrix (scales taken out). words_matrix.cpp.
+void push_matrix_of(lua_State* L, const Pose& pose);
+[[nodiscard]] Pose pose_of_matrix(lua_State* L, const Matrix& matrix, const std::string& what);
+
 /// What stands at `index`, for messages: "a text ('abc')", "nothing", "a body".
 [[nodiscard]] std::string described(lua_State* L, int index);
 
@@ -103,17 +107,19 @@ T& get(lua_State* L, int index, const std::string& what) {
   return *value;
 }
 
-[[nodiscard]] double number_at(lua_State* L, int index, const std::string& what);       ///< finite
+[[nodiscard]] double number_at(lua_State* L, int index, const std::string& what);  ///< finite
 [[nodiscard]] std::string text_at(lua_State* L, int index, const std::string& what);
 [[nodiscard]] bool boolean_at(lua_State* L, int index, const std::string& what);
-[[nodiscard]] Vector3d vector_at(lua_State* L, int index, const std::string& what);     ///< osg.Vec3 or {x, y, z}
-[[nodiscard]] Quaterniond rotation_at(lua_State* L, int index, const std::string& what);///< osg.Quat or {x, y, z, w}; unit
+[[nodiscard]] Vector3d vector_at(lua_State* L, int index, const std::string& what);  ///< osg.Vec3 or {x, y, z}
+[[nodiscard]] Quaterniond rotation_at(lua_State* L, int index,
+                                      const std::string& what);  ///< osg.Quat or {x, y, z, w}; unit
 void push_text(lua_State* L, const std::string& text);
 
 /// ", or an empty string": "; did you mean 'x'? (a, b, c)" for a wrong name among `known` (sorted here).
 [[nodiscard]] std::string suggestion(const std::string& name, std::vector<std::string> known);
 
-/// The table that a word is called with: word{ field = value, child, … }. Each read names a field; finish() refuses the rest.
+/// The table that a word is called with: word{ field = value, child, … }. Each read names a field; finish() refuses the
+/// rest.
 class Fields {
  public:
   /// Raises if there is no table at `index`.

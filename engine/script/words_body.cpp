@@ -7,12 +7,11 @@
 
 namespace verisim::script {
 
-void push_matrix_of(lua_State* L, const Pose& pose);
-Pose pose_of_matrix(lua_State* L, const Matrix& matrix, const std::string& what);
-
 namespace {
 
-std::size_t body_at(lua_State* L, int index) { return get<BodyHandle>(L, index, "what a body's word is called on").index; }
+std::size_t body_at(lua_State* L, int index) {
+  return get<BodyHandle>(L, index, "what a body's word is called on").index;
+}
 
 Pose pose_of(lua_State* L, std::size_t body) {
   ScriptState& state = ScriptState::of(L);
@@ -31,11 +30,21 @@ void set_pose(lua_State* L, std::size_t body, const Pose& pose) {
 
 using Reader = void (*)(lua_State*, ScriptState&, std::size_t);
 
-void read_name(lua_State* L, ScriptState& state, std::size_t body) { push_text(L, state.described_body(body).name); }
-void read_pose(lua_State* L, ScriptState&, std::size_t body) { push(L, pose_of(L, body)); }
-void read_position(lua_State* L, ScriptState&, std::size_t body) { push(L, Vector3d(pose_of(L, body).position)); }
-void read_orientation(lua_State* L, ScriptState&, std::size_t body) { push(L, Quaterniond(pose_of(L, body).rotation)); }
-void read_matrix(lua_State* L, ScriptState&, std::size_t body) { push_matrix_of(L, pose_of(L, body)); }
+void read_name(lua_State* L, ScriptState& state, std::size_t body) {
+  push_text(L, state.described_body(body).name);
+}
+void read_pose(lua_State* L, ScriptState&, std::size_t body) {
+  push(L, pose_of(L, body));
+}
+void read_position(lua_State* L, ScriptState&, std::size_t body) {
+  push(L, Vector3d(pose_of(L, body).position));
+}
+void read_orientation(lua_State* L, ScriptState&, std::size_t body) {
+  push(L, Quaterniond(pose_of(L, body).rotation));
+}
+void read_matrix(lua_State* L, ScriptState&, std::size_t body) {
+  push_matrix_of(L, pose_of(L, body));
+}
 
 void read_mass(lua_State* L, ScriptState& state, std::size_t body) {
   lua_pushnumber(L, state.simulation != nullptr ? state.simulation->mass(body) : state.masses[body]);
@@ -54,10 +63,18 @@ Wrench force_of(const ScriptState& state, std::size_t body) {
 Twist twist_of(ScriptState& state, std::size_t body) {
   return state.simulation != nullptr ? state.simulation->body_twist(body) : state.described_body(body).twist;
 }
-void read_force(lua_State* L, ScriptState& state, std::size_t body) { push(L, Vector3d(force_of(state, body).force)); }
-void read_torque(lua_State* L, ScriptState& state, std::size_t body) { push(L, Vector3d(force_of(state, body).torque)); }
-void read_velocity(lua_State* L, ScriptState& state, std::size_t body) { push(L, Vector3d(twist_of(state, body).linear)); }
-void read_spin(lua_State* L, ScriptState& state, std::size_t body) { push(L, Vector3d(twist_of(state, body).angular)); }
+void read_force(lua_State* L, ScriptState& state, std::size_t body) {
+  push(L, Vector3d(force_of(state, body).force));
+}
+void read_torque(lua_State* L, ScriptState& state, std::size_t body) {
+  push(L, Vector3d(force_of(state, body).torque));
+}
+void read_velocity(lua_State* L, ScriptState& state, std::size_t body) {
+  push(L, Vector3d(twist_of(state, body).linear));
+}
+void read_spin(lua_State* L, ScriptState& state, std::size_t body) {
+  push(L, Vector3d(twist_of(state, body).angular));
+}
 
 void read_contacts(lua_State* L, ScriptState& state, std::size_t body) {
   lua_pushnumber(L, state.simulation != nullptr ? static_cast<double>(state.simulation->body_contacts(body)) : 0);
@@ -68,10 +85,18 @@ struct Member {
   Reader read;
 };
 constexpr Member kMembers[] = {
-    {"name", read_name},           {"pose", read_pose},           {"position", read_position},
-    {"orientation", read_orientation}, {"matrix", read_matrix},   {"mass", read_mass},
-    {"voxelsize", read_voxelsize}, {"force", read_force},         {"torque", read_torque},
-    {"velocity", read_velocity},   {"angularVelocity", read_spin}, {"contacts", read_contacts},
+    {"name", read_name},
+    {"pose", read_pose},
+    {"position", read_position},
+    {"orientation", read_orientation},
+    {"matrix", read_matrix},
+    {"mass", read_mass},
+    {"voxelsize", read_voxelsize},
+    {"force", read_force},
+    {"torque", read_torque},
+    {"velocity", read_velocity},
+    {"angularVelocity", read_spin},
+    {"contacts", read_contacts},
 };
 
 // --- methods --------------------------------------------------------------------------------------------------------
@@ -81,7 +106,8 @@ int set_position(lua_State* L) {
   const std::size_t body = body_at(L, 1);
   Pose pose = pose_of(L, body);
   if (lua_gettop(L) >= 4)
-    pose.position = {number_at(L, 2, "setPosition: x"), number_at(L, 3, "setPosition: y"), number_at(L, 4, "setPosition: z")};
+    pose.position = {number_at(L, 2, "setPosition: x"), number_at(L, 3, "setPosition: y"),
+                     number_at(L, 4, "setPosition: z")};
   else
     pose.position = vector_at(L, 2, "setPosition: the position");
   set_pose(L, body, pose);
@@ -131,11 +157,16 @@ int set_body_member(lua_State* L) {
   const std::size_t body = body_at(L, 1);
   const std::string name = text_at(L, 2, "a body's member");
   Pose pose = pose_of(L, body);
-  if (name == "matrix") pose = pose_of_matrix(L, get<Matrix>(L, 3, "body.matrix"), "body.matrix");
-  else if (name == "pose") pose = get<Pose>(L, 3, "body.pose");
-  else if (name == "position") pose.position = vector_at(L, 3, "body.position");
-  else if (name == "orientation") pose.rotation = rotation_at(L, 3, "body.orientation");
-  else raise(L, "a body's '{}' cannot be set; matrix, pose, position and orientation can", name);
+  if (name == "matrix")
+    pose = pose_of_matrix(L, get<Matrix>(L, 3, "body.matrix"), "body.matrix");
+  else if (name == "pose")
+    pose = get<Pose>(L, 3, "body.pose");
+  else if (name == "position")
+    pose.position = vector_at(L, 3, "body.position");
+  else if (name == "orientation")
+    pose.rotation = rotation_at(L, 3, "body.orientation");
+  else
+    raise(L, "a body's '{}' cannot be set; matrix, pose, position and orientation can", name);
   set_pose(L, body, pose);
   return 0;
 }
@@ -153,10 +184,14 @@ int same_body(lua_State* L) {
 int pose_member(lua_State* L) {
   const Pose& pose = get<Pose>(L, 1, "what a pose's member is asked of");
   const std::string name = text_at(L, 2, "a pose's member");
-  if (name == "position") push(L, Vector3d(pose.position));
-  else if (name == "orientation") push(L, Quaterniond(pose.rotation));
-  else if (name == "matrix") push_matrix_of(L, pose);
-  else raise(L, "a pose has no '{}'{}", name, suggestion(name, {"position", "orientation", "matrix"}));
+  if (name == "position")
+    push(L, Vector3d(pose.position));
+  else if (name == "orientation")
+    push(L, Quaterniond(pose.rotation));
+  else if (name == "matrix")
+    push_matrix_of(L, pose);
+  else
+    raise(L, "a pose has no '{}'{}", name, suggestion(name, {"position", "orientation", "matrix"}));
   return 1;
 }
 

@@ -26,8 +26,8 @@ bool readable(const std::string& file) {
   return std::find(kReadable.begin(), kReadable.end(), extension) != kReadable.end();
 }
 
-/// The name under which Inputs finds a model: as it stands or below a folder of the search path. A format that cannot be
-/// read is replaced by a sibling of the same stem in one that can, with a notice.
+/// The name under which Inputs finds a model: as it stands or below a folder of the search path. A format that cannot
+/// be read is replaced by a sibling of the same stem in one that can, with a notice.
 std::string find_model(lua_State* L, const std::string& given) {
   ScriptState& state = ScriptState::of(L);
   std::string name = given;
@@ -39,11 +39,13 @@ std::string find_model(lua_State* L, const std::string& given) {
       if (state.inputs.exists(place)) return place;
       continue;
     }
-    const std::string stem = place.substr(0, place.size() - (lower_extension(place).empty() ? 0 : lower_extension(place).size() + 1));
+    const std::string stem =
+        place.substr(0, place.size() - (lower_extension(place).empty() ? 0 : lower_extension(place).size() + 1));
     for (const char* extension : kReadable) {
       const std::string sibling = stem + "." + extension;
       if (!state.inputs.exists(sibling)) continue;
-      state.notice(fmt::format("{}: {} is in a format that cannot be read; {} is read in its place", where(L), given, sibling));
+      state.notice(
+          fmt::format("{}: {} is in a format that cannot be read; {} is read in its place", where(L), given, sibling));
       return sibling;
     }
   }
@@ -64,7 +66,8 @@ NodePointer model_node(lua_State* L) {
     lua_pop(L, 1);
     node->file_scale = fields.positive("scale").value_or(1);
     if (const auto part = fields.positive("part")) {
-      if (*part != std::floor(*part)) raise(L, "Model: part is {:g} but must be a whole number, 1 for the first", *part);
+      if (*part != std::floor(*part))
+        raise(L, "Model: part is {:g} but must be a whole number, 1 for the first", *part);
       node->part = static_cast<int>(*part);
     }
     fields.finish(true);
@@ -159,7 +162,9 @@ void set_similarity(lua_State* L, const Matrix& matrix, Node& node) {
   const Matrix3d R = linear / scale;
   constexpr double kTolerance = 1e-6;  // single-precision matrices of modelling programs
   if (!(scale > 0) || !((R * R.transpose() - Matrix3d::Identity()).norm() < kTolerance) || !(R.determinant() > 0))
-    raise(L, "MatrixTransform: the matrix stretches, shears or mirrors; only a rotation, one scale and a translation are taken");
+    raise(L,
+          "MatrixTransform: the matrix stretches, shears or mirrors; only a rotation, one scale and a translation are "
+          "taken");
   node.scale = std::abs(scale - 1) < 1e-12 ? 1 : scale;
   node.pose = {matrix.row(3).head<3>().transpose(), Quaterniond(R).normalized()};
 }
@@ -189,9 +194,12 @@ int push_solid(lua_State* L, Solid solid) {
 }
 
 int box(lua_State* L) {
-  if (lua_type(L, 1) != LUA_TTABLE) raise(L, "Solid.box is called with {}; call it with its three lengths: Solid.box{{0.2, 0.2, 0.1}}", described(L, 1));
+  if (lua_type(L, 1) != LUA_TTABLE)
+    raise(L, "Solid.box is called with {}; call it with its three lengths: Solid.box{{0.2, 0.2, 0.1}}",
+          described(L, 1));
   const Vector3d size = vector_at(L, 1, "Solid.box: the size");
-  return push_solid(L, {.kind = Solid::Kind::box, .sizes = {size.x(), size.y(), size.z()}, .children = {}, .placement = {}});
+  return push_solid(
+      L, {.kind = Solid::Kind::box, .sizes = {size.x(), size.y(), size.z()}, .children = {}, .placement = {}});
 }
 
 template <typename... Names>
@@ -207,10 +215,18 @@ int round_solid(lua_State* L, Solid::Kind kind, const char* word, Names... names
   return push_solid(L, std::move(solid));
 }
 
-int cylinder(lua_State* L) { return round_solid(L, Solid::Kind::cylinder, "Solid.cylinder", "radius", "height"); }
-int cone(lua_State* L) { return round_solid(L, Solid::Kind::cone, "Solid.cone", "radius1", "radius2", "height"); }
-int sphere(lua_State* L) { return round_solid(L, Solid::Kind::sphere, "Solid.sphere", "radius"); }
-int tube(lua_State* L) { return round_solid(L, Solid::Kind::tube, "Solid.tube", "outer", "inner", "height"); }
+int cylinder(lua_State* L) {
+  return round_solid(L, Solid::Kind::cylinder, "Solid.cylinder", "radius", "height");
+}
+int cone(lua_State* L) {
+  return round_solid(L, Solid::Kind::cone, "Solid.cone", "radius1", "radius2", "height");
+}
+int sphere(lua_State* L) {
+  return round_solid(L, Solid::Kind::sphere, "Solid.sphere", "radius");
+}
+int tube(lua_State* L) {
+  return round_solid(L, Solid::Kind::tube, "Solid.tube", "outer", "inner", "height");
+}
 
 std::shared_ptr<const Solid> solid_at(lua_State* L, int index, const char* what) {
   const NodePointer node = get<NodePointer>(L, index, what);
@@ -219,17 +235,25 @@ std::shared_ptr<const Solid> solid_at(lua_State* L, int index, const char* what)
 }
 
 int combine(lua_State* L, Solid::Kind kind, const char* what) {
-  return push_solid(L, {.kind = kind, .sizes = {}, .children = {solid_at(L, 1, what), solid_at(L, 2, what)}, .placement = {}});
+  return push_solid(
+      L, {.kind = kind, .sizes = {}, .children = {solid_at(L, 1, what), solid_at(L, 2, what)}, .placement = {}});
 }
-int subtract(lua_State* L) { return combine(L, Solid::Kind::difference, "each side of '-'"); }
-int add(lua_State* L) { return combine(L, Solid::Kind::sum, "each side of '+'"); }
-int intersect(lua_State* L) { return combine(L, Solid::Kind::intersection, "each side of '*'"); }
+int subtract(lua_State* L) {
+  return combine(L, Solid::Kind::difference, "each side of '-'");
+}
+int add(lua_State* L) {
+  return combine(L, Solid::Kind::sum, "each side of '+'");
+}
+int intersect(lua_State* L) {
+  return combine(L, Solid::Kind::intersection, "each side of '*'");
+}
 
 int translate(lua_State* L) {
   const auto solid = solid_at(L, 1, "what :translate moves");
   Pose placement;
   if (lua_gettop(L) >= 4)
-    placement.position = {number_at(L, 2, "translate: x"), number_at(L, 3, "translate: y"), number_at(L, 4, "translate: z")};
+    placement.position = {number_at(L, 2, "translate: x"), number_at(L, 3, "translate: y"),
+                          number_at(L, 4, "translate: z")};
   else
     placement.position = vector_at(L, 2, "translate: the way");
   return push_solid(L, {.kind = Solid::Kind::placed, .sizes = {}, .children = {solid}, .placement = placement});

@@ -12,11 +12,16 @@ namespace {
 
 nlohmann::json to_json(lua_State* L, int index, const std::string& what) {
   switch (lua_type(L, index)) {
-    case LUA_TBOOLEAN: return lua_toboolean(L, index) != 0;
-    case LUA_TNUMBER: return number_at(L, index, what);
-    case LUA_TSTRING: return text_at(L, index, what);
-    case LUA_TTABLE: break;
-    default: raise(L, "{} must be a number, a text, true or false, or a list of these, not {}", what, described(L, index));
+    case LUA_TBOOLEAN:
+      return lua_toboolean(L, index) != 0;
+    case LUA_TNUMBER:
+      return number_at(L, index, what);
+    case LUA_TSTRING:
+      return text_at(L, index, what);
+    case LUA_TTABLE:
+      break;
+    default:
+      raise(L, "{} must be a number, a text, true or false, or a list of these, not {}", what, described(L, index));
   }
   nlohmann::json list = nlohmann::json::array();
   const auto length = static_cast<int>(lua_objlen(L, index));
@@ -40,7 +45,8 @@ bool is_bare_word(const std::string& text) {
   std::abort();  // lua_error does not return
 }
 
-// Leaves the value of `--set key=text` on the stack. A text parameter takes its text as it stands, unless that is quoted.
+// Leaves the value of `--set key=text` on the stack. A text parameter takes its text as it stands, unless that is
+// quoted.
 void push_set_value(lua_State* L, const std::string& key, const std::string& text, int default_type) {
   const bool quoted = !text.empty() && (text[0] == '"' || text[0] == '\'');
   if (default_type == LUA_TSTRING && !quoted) {
@@ -50,7 +56,8 @@ void push_set_value(lua_State* L, const std::string& key, const std::string& tex
   Sandbox& sandbox = Sandbox::of(L);
   const std::string place = fmt::format("--set {}={}", key, text);
   if (const auto failure = sandbox.load(L, place, "return " + text)) {
-    if (!is_bare_word(text)) raise_for_command_line(L, fmt::format("{}: this is no Lua expression; a number like 0.005 or mm(5) is", place));
+    if (!is_bare_word(text))
+      raise_for_command_line(L, fmt::format("{}: this is no Lua expression; a number like 0.005 or mm(5) is", place));
     push_text(L, text);
     return;
   }
@@ -62,20 +69,24 @@ void push_set_value(lua_State* L, const std::string& key, const std::string& tex
   }
 }
 
-std::string names_hint(const ScriptState& state, const std::string& key) { return suggestion(key, state.parameter_names); }
+std::string names_hint(const ScriptState& state, const std::string& key) {
+  return suggestion(key, state.parameter_names);
+}
 
 void check_names(lua_State* L, const ScriptState& state) {
   for (const auto& [key, value] : state.options.sets) {
     const auto& names = state.parameter_names;
     if (std::find(names.begin(), names.end(), key) == names.end())
-      raise_for_command_line(L, fmt::format("--set {}={}: {} has no parameter '{}'{}", key, value, state.name(), key, names_hint(state, key)));
+      raise_for_command_line(L, fmt::format("--set {}={}: {} has no parameter '{}'{}", key, value, state.name(), key,
+                                            names_hint(state, key)));
   }
 }
 
 // params{…}: argument 1 is `params` itself (called through its metatable), argument 2 the defaults.
 int declare_parameters(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  if (lua_type(L, 2) != LUA_TTABLE) raise(L, "params is called with {}; call it with a table: params{{ clearance = 0.005 }}", described(L, 2));
+  if (lua_type(L, 2) != LUA_TTABLE)
+    raise(L, "params is called with {}; call it with a table: params{{ clearance = 0.005 }}", described(L, 2));
   if (state.parameters_place)
     raise(L, "params was declared at {} already; put all parameters there", *state.parameters_place);
   state.parameters_place = where(L);
@@ -90,8 +101,9 @@ int declare_parameters(lua_State* L) {
     const int type = lua_type(L, -1);
     push_set_value(L, key, value, type);
     if (lua_type(L, -1) != type)
-      raise_for_command_line(L, fmt::format("--set {}={}: '{}' must be a {}, as its default at {} is, not {}", key, value, key,
-                                            lua_typename(L, type), *state.parameters_place, described(L, -1)));
+      raise_for_command_line(
+          L, fmt::format("--set {}={}: '{}' must be a {}, as its default at {} is, not {}", key, value, key,
+                         lua_typename(L, type), *state.parameters_place, described(L, -1)));
     lua_setfield(L, 2, key.c_str());
     lua_pop(L, 1);
   }
@@ -142,11 +154,13 @@ int say_outcome(lua_State* L) {
 // The last value said under a name counts.
 int say_measure(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  Measure measure{.name = text_at(L, 1, "measure: the name"), .value = number_at(L, 2, "measure: the value"), .unit = "1"};
+  Measure measure{
+      .name = text_at(L, 1, "measure: the name"), .value = number_at(L, 2, "measure: the value"), .unit = "1"};
   if (!lua_isnoneornil(L, 3)) measure.unit = text_at(L, 3, "measure: the unit");
   for (Measure& known : state.measures) {
     if (known.name != measure.name) continue;
-    if (known.unit != measure.unit) raise(L, "measure '{}' had the unit '{}' and now has '{}'", measure.name, known.unit, measure.unit);
+    if (known.unit != measure.unit)
+      raise(L, "measure '{}' had the unit '{}' and now has '{}'", measure.name, known.unit, measure.unit);
     known = measure;
     return 0;
   }

@@ -32,13 +32,15 @@ void accept_without_effect(lua_State* L, Fields& fields, std::initializer_list<c
 
 int define_simulation_parameters(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  if (state.simulation != nullptr) raise(L, "defineSimulationParameters: the simulation runs already; call it while the scene is built");
+  if (state.simulation != nullptr)
+    raise(L, "defineSimulationParameters: the simulation runs already; call it while the scene is built");
   SimulationParameters& p = state.scene.parameters;
   Fields fields(L, 1, "defineSimulationParameters");
   p.timestep = fields.positive("timestep").value_or(p.timestep);
   p.gravity = fields.vector("gravity").value_or(p.gravity);
   if (const auto seed = fields.number("seed")) {
-    if (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed)) raise(L, "seed is {:g} but must be a whole number from 0 to 2^53", *seed);
+    if (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed))
+      raise(L, "seed is {:g} but must be a whole number from 0 to 2^53", *seed);
     if (!state.options.seed) p.seed = static_cast<std::uint64_t>(*seed);
   }
   if (const auto duration = fields.positive("duration")) p.duration = duration;
@@ -63,13 +65,15 @@ int define_simulation_parameters(lua_State* L) {
 
 // A name becomes a folder of the run file and a side of 'A~B'.
 void check_name(lua_State* L, const std::string& name) {
-  const bool spoiled = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '~'; });
+  const bool spoiled =
+      std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '~'; });
   if (name.empty() || name == "." || spoiled)
     raise(L, "addObject: name is '{}' but must not be empty or '.', nor contain '/', '~' or control characters", name);
 }
 
 bool name_taken(const Scene& scene, const std::string& name) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodyDescription& b) { return b.name == name; });
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [&](const BodyDescription& b) { return b.name == name; });
 }
 
 std::string free_name(const Scene& scene, const std::string& stem) {
@@ -118,12 +122,14 @@ void read_hybrid(lua_State* L, Fields& fields, BodyDescription& body) {
 
 int add_object(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  if (state.simulation != nullptr) raise(L, "addObject: the simulation runs already; add objects while the scene is built");
+  if (state.simulation != nullptr)
+    raise(L, "addObject: the simulation runs already; add objects while the scene is built");
   Fields fields(L, 1, "addObject");
   BodyDescription body;
   const auto name = fields.text("name");
   if (name) check_name(L, *name);
-  if (name && name_taken(state.scene, *name)) raise(L, "addObject: there is a body '{}' already; give each its own name", *name);
+  if (name && name_taken(state.scene, *name))
+    raise(L, "addObject: there is a body '{}' already; give each its own name", *name);
   body.X_WB.position = fields.vector("position").value_or(Vector3d::Zero());
   body.X_WB.rotation = fields.rotation("orientation").value_or(Quaterniond::Identity());
   body.density = fields.positive("density").value_or(body.density);

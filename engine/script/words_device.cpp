@@ -1,0 +1,321 @@
+// Devices, the filters that wrap them, and what holds what.
+#include <cmath>
+
+#include "engine/record/trace.hpp"
+#include "engine/script/script_state.hpp"
+#include "engine/script/values.hpp"
+
+namespace verisim::script {
+
+namespace {
+
+using DevicePointer = std::shared_ptr<DeviceNode>;
+
+constexpr double kOmniScale = 20;     // SPARTA's default for the Phantom Omni
+constexpr double kVirtuoseScale = 1;  // and for the Virtuose
+
+DevicePointer new_device(lua_State* L, DeviceNode::Kind kind) {
+  auto node = std::make_shared<DeviceNode>();
+  node->kind = kind;
+  node->place = where(L);
+  return node;
+}
+
+DevicePointer device_at(lua_State* L, int index, const std::string& what) {
+  return get<DevicePointer>(L, index, what);
+}
+
+void check_building(lua_State* L, const char* word) {
+  if (ScriptState::of(L).simulation != nullptr)
+    raise(L, "{}: the simulation runs already; call it while the scene is built", word);
+}
+
+DevicePointer scaled_device(lua_State* L, DevicePointer inner, double factor) {
+  if (factor == 1) return inner;
+  DevicePointer node = new_device(L, DeviceNode::Kind::scale);
+  node->factor = factor;
+  node->inner = std::move(inner);
+  return node;
+}
+
+// --- hardware -------------------------------------------------------------------------------------------------------
+
+int hardware(lua_State* L, const char* word, HardwareDescription description, double scale,
+             std::initializer_list<const char*> without_effect) {
+  check_building(L, word);
+  Fields fields(L, 1, word);
+  DevicePointer node = new_device(L, DeviceNode::Kind::hardware);
+  node->hardware = std::move(description);
+  node->name = fields.text("name").value_or("");
+  node->hardware.forces = fields.boolean("forces").value_or(true);
+  scale = fields.positive("scale").value_or(scale);
+  if (fields.push("operator")) {
+    node->inner = device_at(L, lua_gettop(L), fields.name_of("operator"));
+    if (node->inner->kind != DeviceNode::Kind::hand && node->inner->kind != DeviceNode::Kind::replay)
+      raise(L, "{}: operator must be a Devices.Hand or a Devices.Replay", word);
+    lua_pop(L, 1);
+  }
+  for (const char* name : without_effect)
+    if (fields.accepted(name))
+      ScriptState::of(L).notice(fmt::format("{}: {}: {} is accepted and changes nothing", where(L), word, name));
+  fields.finish(false);
+  push(L, scaled_device(L, std::move(node), scale));
+  return 1;
+}
+
+int phantom(lua_State* L) {
+  return hardware(L, "Devices.Sensable.PhantomOmni", phantom_omni("omni"), kOmniScale, {});
+}
+
+int virtuose(lua_State* L) {
+  return hardware(L, "Devices.Haption.Virtuose6D3545", virtuose_6d("virtuose"), kVirtuoseScale,
+                  {"ipaddress", "hardwareForceScale", "torqueScale", "indexType"});
+}
+
+// --- sources --------------------------------------------------------------------------------------------------------
+
+int replay(lua_State* L) {
+  check_building(L, "Devices.Replay");
+  Fields fields(L, 1, "Devices.Replay");
+  DevicePointer node = new_device(L, DeviceNode::Kind::replay);
+  const auto trace = fields.text("trace");
+  if (!trace) raise(L, "Devices.Replay needs trace: Devices.Replay{{ trace = \"hand.csv\" }}");
+  node->name = fields.text("name").value_or("");
+  const double max_gap = fields.positive("maxGap").value_or(TraceLimits{}.max_gap);
+  const bool allow_gaps = fields.boolean("allowGaps").value_or(false);
+  fields.finish(false);
+  node->samples = read_samples(ScriptState::of(L).inputs, *trace, max_gap, allow_gaps);
+  push(L, node);
+  return 1;
+}
+
+HandWaypoint waypoint_at(lua_State* L, int index, const std::string& what) {
+  HandWaypoint waypoint;
+  Fields fields(L, index, what);
+  if (const auto position = fields.vector("position"))
+    waypoint.pose.position = *position;
+  else if (fields.children() == 3)
+    waypoint.pose.position = vector_at(L, index, what);
+  else
+    raise(L, "{} needs position: {{ position = {{x, y, z}}, speed = 0.1 }} or {{x, y, z}}", what);
+  waypoint.pose.rotation = fields.rotation("orientation").value_or(Quaterniond::Identity());
+  waypoint.speed = fields.positive("speed").value_or(waypoint.speed);
+  waypoint.dwell = fields.number("dwell", 0);
+  if (waypoint.dwell < 0) raise(L, "{}: dwell is {:g} s but must not be negative", what, waypoint.dwell);
+  fields.finish(true);
+  return waypoint;
+}
+
+void read_path(lua_State* L, Fields& fields, HandDescription& hand) {
+  if (!fields.push("path"))
+    raise(L, "Devices.Hand needs path: a list of waypoints {{ position = {{x, y, z}}, speed = 0.1, dwell = 0 }}");
+  const int list = lua_gettop(L);
+  if (lua_type(L, list) != LUA_TTABLE || lua_objlen(L, list) == 0)
+    raise(L, "Devices.Hand: path must be a list of waypoints, not {}",
+          lua_type(L, list) == LUA_TTABLE ? "an empty one" : described(L, list));
+  const auto count = static_cast<int>(lua_objlen(L, list));
+  for (int i = 1; i <= count; ++i) {
+    lua_rawgeti(L, list, i);
+    hand.path.push_back(waypoint_at(L, lua_gettop(L), fmt::format("Devices.Hand: path[{}]", i)));
+    lua_pop(L, 1);
+  }
+  lua_pop(L, 1);
+}
+
+double not_negative(lua_State* L, Fields& fields, const char* name, double otherwise) {
+  const double value = fields.number(name, otherwise);
+  if (value < 0) raise(L, "{} is {:g} but must not be negative", fields.name_of(name), value);
+  return value;
+}
+
+// A muscle that is given another stiffness or mass stays critically damped unless its damping is given too.
+void read_impedance(lua_State* L, Fields& fields, HandDescription& hand) {
+  hand.mass = fields.positive("mass").value_or(hand.mass);
+  hand.stiffness = fields.positive("stiffness").value_or(hand.stiffness);
+  hand.damping = not_negative(L, fields, "damping", 2 * std::sqrt(hand.stiffness * hand.mass));
+  hand.inertia = fields.positive("inertia").value_or(hand.inertia);
+  hand.angular_stiffness = fields.positive("angularStiffness").value_or(hand.angular_stiffness);
+  hand.angular_damping =
+      not_negative(L, fields, "angularDamping", 2 * std::sqrt(hand.angular_stiffness * hand.inertia));
+}
+
+int hand_device(lua_State* L) {
+  check_building(L, "Devices.Hand");
+  Fields fields(L, 1, "Devices.Hand");
+  DevicePointer node = new_device(L, DeviceNode::Kind::hand);
+  HandDescription& hand = node->hand;
+  node->name = fields.text("name").value_or("");
+  read_path(L, fields, hand);
+  // `repeat` is a keyword of Lua: as a key it needs ["repeat"].
+  hand.repeat = fields.boolean("loop").value_or(false);
+  hand.repeat = fields.boolean("repeat").value_or(hand.repeat);
+  read_impedance(L, fields, hand);
+  hand.lead = fields.positive("lead").value_or(hand.lead);
+  hand.patience = fields.positive("patience").value_or(hand.patience);
+  hand.tremor = not_negative(L, fields, "tremor", 0);
+  hand.angular_tremor = not_negative(L, fields, "angularTremor", 0);
+  hand.error = fields.vector("error").value_or(Vector3d::Zero());
+  hand.angular_error = fields.vector("angularError").value_or(Vector3d::Zero());
+  if (const auto seed = fields.number("seed")) {
+    if (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed))
+      raise(L, "Devices.Hand: seed must be a whole number, not {:g}", *seed);
+    hand.seed = static_cast<std::uint64_t>(*seed);
+    node->own_seed = true;
+  }
+  fields.finish(false);
+  push(L, node);
+  return 1;
+}
+
+// --- filters and the scene ------------------------------------------------------------------------------------------
+
+DevicePointer wrapped(lua_State* L, Fields& fields, const char* word) {
+  check_building(L, word);
+  fields.push_child(1);
+  DevicePointer inner = device_at(L, lua_gettop(L), fmt::format("{}: the device", word));
+  lua_pop(L, 1);
+  return inner;
+}
+
+int translate_device(lua_State* L) {
+  Fields fields(L, 1, "translateDevice");
+  DevicePointer node = new_device(L, DeviceNode::Kind::translate);
+  node->inner = wrapped(L, fields, "translateDevice");
+  const auto translation = fields.vector("translation");
+  if (!translation)
+    raise(L, "translateDevice needs translation: translateDevice{{ device, translation = {{x, y, z}} }}");
+  node->translation = *translation;
+  fields.finish(true);
+  push(L, node);
+  return 1;
+}
+
+int scale_device(lua_State* L) {
+  Fields fields(L, 1, "scaleDevice");
+  DevicePointer inner = wrapped(L, fields, "scaleDevice");
+  const auto factor = fields.positive("scale");
+  if (!factor) raise(L, "scaleDevice needs scale: scaleDevice{{ device, scale = 4 }}");
+  fields.finish(true);
+  push(L, scaled_device(L, std::move(inner), *factor));
+  return 1;
+}
+
+int add_device(lua_State* L) {
+  check_building(L, "addDevice");
+  ScriptState& state = ScriptState::of(L);
+  DevicePointer device = device_at(L, 1, "addDevice: the device");
+  for (const DevicePointer& known : state.devices)
+    for (const DeviceNode* a = known.get(); a != nullptr; a = a->inner.get())
+      for (const DeviceNode* b = device.get(); b != nullptr; b = b->inner.get())
+        if (a == b) raise(L, "addDevice: this device, or one inside it, was added already; add the outermost, once");
+  state.devices.push_back(std::move(device));
+  lua_settop(L, 1);
+  return 1;
+}
+
+int grasp(lua_State* L) {
+  ScriptState& state = ScriptState::of(L);
+  DevicePointer device = device_at(L, 1, "grasp: the first argument");
+  const std::size_t body = get<BodyHandle>(L, 2, "grasp: the second argument").index;
+  if (state.described_body(body).fixed)
+    raise(L, "grasp: '{}' is fixed and cannot be held", state.described_body(body).name);
+  if (state.simulation != nullptr)
+    state.simulation->grasp(state.device_index(*device), body);
+  else
+    state.grasps.emplace_back(std::move(device), body);
+  return 0;
+}
+
+int release(lua_State* L) {
+  ScriptState& state = ScriptState::of(L);
+  const DevicePointer device = device_at(L, 1, "release: the device");
+  if (state.simulation == nullptr) raise(L, "release: the simulation does not run yet");
+  state.simulation->release(state.device_index(*device));
+  return 0;
+}
+
+// --- what a running device says -------------------------------------------------------------------------------------
+
+// A device that was made and never added has no state.
+Device* running(lua_State* L, const DeviceNode& node) {
+  return ScriptState::of(L).simulation == nullptr ? nullptr : node.device.get();
+}
+
+int button_state(lua_State* L) {
+  const DevicePointer node = device_at(L, 1, "getButtonState: the device");
+  const double index = lua_isnoneornil(L, 2) ? 0 : number_at(L, 2, "getButtonState: the button");
+  const Device* device = running(L, *node);
+  lua_pushboolean(L, device != nullptr && index == 0 && device->reading().button ? 1 : 0);
+  return 1;
+}
+
+const std::string& name_of(const DeviceNode& node) {
+  const DeviceNode* at = &node;
+  while (at->kind == DeviceNode::Kind::scale || at->kind == DeviceNode::Kind::translate) at = at->inner.get();
+  return at->name;
+}
+
+int device_member(lua_State* L) {
+  const DevicePointer node = device_at(L, 1, "what a device's word is called on");
+  const std::string name = text_at(L, 2, "a device's member");
+  const Device* device = running(L, *node);
+  const DeviceReading reading = device != nullptr ? device->reading() : DeviceReading{};
+  const Wrench rendered = device != nullptr ? device->rendered() : Wrench{};
+  if (name == "name")
+    push_text(L, name_of(*node));
+  else if (name == "handle" || name == "pose")
+    push(L, Pose(reading.handle));
+  else if (name == "raw")
+    push(L, Pose(reading.raw));
+  else if (name == "position")
+    push(L, Vector3d(reading.handle.position));
+  else if (name == "orientation")
+    push(L, Quaterniond(reading.handle.rotation));
+  else if (name == "matrix")
+    push_matrix_of(L, reading.handle);
+  else if (name == "forces")
+    push(L, Vector3d(rendered.force));
+  else if (name == "torques")
+    push(L, Vector3d(rendered.torque));
+  else if (name == "getButtonState")
+    lua_pushcfunction(L, guarded<button_state>);
+  else
+    raise(L, "a device has no '{}'{}", name,
+          suggestion(name, {"name", "handle", "pose", "raw", "position", "orientation", "matrix", "forces", "torques",
+                            "getButtonState"}));
+  return 1;
+}
+
+int device_text(lua_State* L) {
+  push_text(L, fmt::format("device '{}'", name_of(*device_at(L, 1, "a device"))));
+  return 1;
+}
+
+}  // namespace
+
+void add_device_words(lua_State* L) {
+  push_metatable<DevicePointer>(L);
+  set_function<device_member>(L, "__index");
+  set_function<device_text>(L, "__tostring");
+  lua_pop(L, 1);
+  lua_newtable(L);
+  lua_newtable(L);
+  set_function<phantom>(L, "PhantomOmni");
+  lua_setfield(L, -2, "Sensable");
+  lua_newtable(L);
+  set_function<virtuose>(L, "Virtuose6D3545");
+  lua_setfield(L, -2, "Haption");
+  set_function<replay>(L, "Replay");
+  set_function<hand_device>(L, "Hand");
+  lua_setglobal(L, "Devices");
+  set_global<translate_device>(L, "translateDevice");
+  set_global<scale_device>(L, "scaleDevice");
+  set_global<add_device>(L, "addDevice");
+  set_global<grasp>(L, "grasp");
+  set_global<release>(L, "release");
+  // SPARTA's words before its version 3.
+  set_global<translate_device>(L, "translateManipulator");
+  set_global<add_device>(L, "addManipulator");
+}
+
+}  // namespace verisim::script
