@@ -245,7 +245,8 @@ std::ptrdiff_t PatternMatcher::match_back_reference(std::ptrdiff_t s, std::size_
   if (pattern_[p + 1] == '0' || level >= captures_.size() || captures_[level].length == kUnclosed)
     fail(ErrorKind::input, "malformed pattern (%{} refers to no closed capture)", pattern_[p + 1]);
   const Capture& capture = captures_[level];
-  const std::ptrdiff_t length = std::max<std::ptrdiff_t>(capture.length, 0);
+  if (capture.length == kPosition) return kNoMatch;  // a position is no text
+  const std::ptrdiff_t length = capture.length;
   steps_ += static_cast<std::uint64_t>(length) / 8;
   if (static_cast<std::ptrdiff_t>(subject_.size()) - s < length) return kNoMatch;
   const std::string_view wanted =

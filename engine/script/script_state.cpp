@@ -176,7 +176,7 @@ void ScriptState::frame() {
 void ScriptState::notice(const std::string& text) {
   if (!told_.insert(text).second) return;
   notices.push_back(text);
-  event("notice", text);
+  if (simulation != nullptr) event("warning", text);  // before that, whoever reads notices() writes the events
 }
 
 void ScriptState::event(const std::string& kind, const std::string& text) {

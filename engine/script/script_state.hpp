@@ -52,6 +52,9 @@ struct FrameActionHandle {
   std::uint64_t id;
 };
 
+/// Stands for a material, a light, a font …: every member of it is again such a thing, every call gives one.
+struct Drawing {};
+
 class ScriptState : public Sandbox {
  public:
   ScriptState(const ScenarioOptions& options, Inputs& inputs);

@@ -4,9 +4,6 @@
 
 namespace verisim::script {
 
-/// Stands for a material, a light, a font …: every member of it is again such a thing, every call gives one.
-struct Drawing {};
-
 namespace {
 
 int drawing_call(lua_State* L) {

@@ -89,6 +89,19 @@ int model(lua_State* L) {
   return 1;
 }
 
+// { min, max }, each also under its name.
+void push_bounds(lua_State* L, const Bounds& bounds) {
+  lua_newtable(L);
+  push(L, Vector3d(bounds.min));
+  lua_pushvalue(L, -1);
+  lua_setfield(L, -3, "min");
+  lua_rawseti(L, -2, 1);
+  push(L, Vector3d(bounds.max));
+  lua_pushvalue(L, -1);
+  lua_setfield(L, -3, "max");
+  lua_rawseti(L, -2, 2);
+}
+
 // modelParts(file[, {scale=}]) -> { { name=, index=, volume=, center=, bounds={min, max}, brep= }, … }
 int model_parts(lua_State* L) {
   const std::string file = find_model(L, text_at(L, 1, "modelParts: the file"));
@@ -101,7 +114,6 @@ int model_parts(lua_State* L) {
   const std::vector<Part>& parts = load_file(ScriptState::of(L).inputs, file, scale);
   lua_createtable(L, static_cast<int>(parts.size()), 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Bounds bounds = bounds_of(parts[i].mesh);
     lua_newtable(L);
     push_text(L, parts[i].name);
     lua_setfield(L, -2, "name");
@@ -111,11 +123,7 @@ int model_parts(lua_State* L) {
     lua_setfield(L, -2, "volume");
     push(L, Vector3d(parts[i].mass.centroid));
     lua_setfield(L, -2, "center");
-    lua_newtable(L);
-    push(L, Vector3d(bounds.min));
-    lua_setfield(L, -2, "min");
-    push(L, Vector3d(bounds.max));
-    lua_setfield(L, -2, "max");
+    push_bounds(L, bounds_of(parts[i].mesh));
     lua_setfield(L, -2, "bounds");
     lua_pushboolean(L, parts[i].has_brep() ? 1 : 0);
     lua_setfield(L, -2, "brep");

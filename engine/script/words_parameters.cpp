@@ -168,6 +168,12 @@ int say_measure(lua_State* L) {
   return 0;
 }
 
+// event("passed", "the pin is through"): a line of /events.
+int say_event(lua_State* L) {
+  ScriptState::of(L).event(text_at(L, 1, "event: the kind"), text_at(L, 2, "event: the text"));
+  return 0;
+}
+
 }  // namespace
 
 void add_parameter_words(lua_State* L) {
@@ -181,6 +187,7 @@ void add_parameter_words(lua_State* L) {
   set_global<degrees>(L, "deg");
   set_global<say_outcome>(L, "outcome");
   set_global<say_measure>(L, "measure");
+  set_global<say_event>(L, "event");
 }
 
 }  // namespace verisim::script

@@ -1,5 +1,6 @@
 // defineSimulationParameters and addObject: what makes a scene.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
@@ -63,12 +64,15 @@ int define_simulation_parameters(lua_State* L) {
   return 0;
 }
 
-// A name becomes a folder of the run file and a side of 'A~B'.
-void check_name(lua_State* L, const std::string& name) {
-  const bool spoiled =
-      std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '~'; });
-  if (name.empty() || name == "." || spoiled)
-    raise(L, "addObject: name is '{}' but must not be empty or '.', nor contain '/', '~' or control characters", name);
+// A name becomes a folder of the run file and a side of 'A~B': what would break those is replaced, with a notice.
+std::string recordable(lua_State* L, const std::string& name) {
+  std::string result = name;
+  for (char& c : result)
+    if (static_cast<unsigned char>(c) < 0x20 || c == '/' || c == '~') c = '_';
+  if (result.empty() || result == ".") raise(L, "addObject: name is '{}'; give the object a name", name);
+  if (result != name)
+    ScriptState::of(L).notice(fmt::format("{}: the object's name '{}' is recorded as '{}'", where(L), name, result));
+  return result;
 }
 
 bool name_taken(const Scene& scene, const std::string& name) {
@@ -77,9 +81,8 @@ bool name_taken(const Scene& scene, const std::string& name) {
 }
 
 std::string free_name(const Scene& scene, const std::string& stem) {
-  const std::string base = stem.empty() ? "body" : stem;
-  std::string name = stem.empty() ? "body1" : stem;
-  for (int i = 2; name_taken(scene, name); ++i) name = fmt::format("{}{}", base, i);
+  std::string name = stem;
+  for (int i = 2; name_taken(scene, name); ++i) name = fmt::format("{}{}", stem, i);
   return name;
 }
 
@@ -107,7 +110,6 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
   stem = placed_parts.stem;
   for (const Part& part : body.parts) {
     for (const std::string& note : part.notes) state.notice(fmt::format("{}: {}: {}", where(L), part.name, note));
-    for (const std::string& question : questions_about(part)) state.notice(fmt::format("{}: {}", where(L), question));
   }
 }
 
@@ -126,8 +128,8 @@ int add_object(lua_State* L) {
     raise(L, "addObject: the simulation runs already; add objects while the scene is built");
   Fields fields(L, 1, "addObject");
   BodyDescription body;
-  const auto name = fields.text("name");
-  if (name) check_name(L, *name);
+  auto name = fields.text("name");
+  if (name) name = recordable(L, *name);
   if (name && name_taken(state.scene, *name))
     raise(L, "addObject: there is a body '{}' already; give each its own name", *name);
   body.X_WB.position = fields.vector("position").value_or(Vector3d::Zero());
@@ -145,7 +147,7 @@ int add_object(lua_State* L) {
 
   std::string stem;
   read_geometry(L, fields, body, stem);
-  body.name = name ? *name : free_name(state.scene, stem);
+  body.name = name ? *name : free_name(state.scene, recordable(L, stem.empty() ? "body" : stem));
   if (!(voxel_size > 0))
     raise(L, "voxelsize is {:g} m but must be above 0; '{}' measures {:g} m, mm({:g}) is usual", voxel_size, body.name,
           extent_of(body), kUsualVoxelSize * 1000);
