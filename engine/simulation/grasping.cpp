@@ -39,6 +39,8 @@ std::size_t Simulation::Implementation::nearest_body(const Vector3d& p_W) const 
 }
 
 void Simulation::Implementation::update_grasps() {
+  for (const Grasp& grasp : first_grasps) take(grasp.device, grasp.body, true);
+  first_grasps.clear();
   for (std::size_t d = 0; d < devices.size(); ++d) {
     Held& hand = held[d];
     const DeviceReading& reading = devices[d]->reading();

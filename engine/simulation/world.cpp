@@ -96,7 +96,7 @@ Simulation::Implementation::Implementation(Scene scene, const SimulationOptions&
   make_links();
   make_schema();
   events.reserve(1024);
-  for (const Grasp& grasp : scene.grasps) take(grasp.device, grasp.body, true);
+  first_grasps = scene.grasps;
   energy = energy_now();
   ledger.start(energy);
 }

@@ -64,6 +64,7 @@ struct Simulation::Implementation {
   std::vector<std::shared_ptr<Device>> devices;
   std::vector<Held> held;  ///< per device
   double grasp_distance = 0.1;
+  std::vector<Grasp> first_grasps;  ///< of the scene: taken in the first frame, when the handles have been sampled
   Ledger ledger;
   EnergyState energy;
   Clocks clocks;
