@@ -1,0 +1,45 @@
+# verisim_core_variants(NAME MAIN file.cpp CORE targets...): the same program with g++ and clang++ at -O0, -O2 and -O3,
+# and a test that all six print the same lines. The sources of the CORE libraries are compiled anew for each variant.
+# What those libraries need besides (files, CAD, HDF5: no part of a simulated frame) is linked as the build made it, and
+# so are their archives; but a linker takes from an archive only what no object has defined, so nothing of the core.
+option(VERISIM_COMPILERS "Compile the simulation core with two compilers at three levels and compare the bits" OFF)
+
+function(verisim_core_variants name)
+  cmake_parse_arguments(ARG "" "MAIN" "CORE" ${ARGN})
+  if(NOT VERISIM_COMPILERS)
+    return()
+  endif()
+  find_program(VERISIM_GCC g++ REQUIRED)
+  find_program(VERISIM_CLANG clang++ REQUIRED)
+
+  set(sources ${ARG_MAIN})
+  foreach(library IN LISTS ARG_CORE)
+    get_target_property(folder ${library} SOURCE_DIR)
+    get_target_property(files ${library} SOURCES)
+    list(TRANSFORM files PREPEND ${folder}/)
+    list(APPEND sources ${files})
+  endforeach()
+
+  set(programs)
+  foreach(compiler ${VERISIM_GCC} ${VERISIM_CLANG})
+    get_filename_component(compiler_name ${compiler} NAME)
+    foreach(level 0 2 3)
+      set(variant ${name}_${compiler_name}_O${level})
+      add_executable(${variant} ${sources})
+      target_link_libraries(${variant} PRIVATE ${ARG_CORE})
+      target_compile_options(${variant} PRIVATE -O${level} -g0)
+      set_target_properties(${variant} PROPERTIES
+        CXX_COMPILER_LAUNCHER "${PROJECT_SOURCE_DIR}/cmake/compile_with.sh;${compiler}"
+        EXPORT_COMPILE_COMMANDS OFF  # the default build's are the ones to lint
+        RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/variants)
+      list(APPEND programs $<TARGET_FILE:${variant}>)
+    endforeach()
+  endforeach()
+  add_test(NAME compilers.${name} COMMAND ${PROJECT_SOURCE_DIR}/cmake/same_output.sh ${programs})
+  set_tests_properties(compilers.${name} PROPERTIES LABELS compilers TIMEOUT 600)
+endfunction()
+
+# The alarm itself: two programs that print different lines must not pass.
+add_test(NAME compilers.SeesADifference COMMAND ${PROJECT_SOURCE_DIR}/cmake/same_output.sh /bin/pwd /bin/uname)
+add_test(NAME compilers.SeesSilence COMMAND ${PROJECT_SOURCE_DIR}/cmake/same_output.sh /bin/true /bin/true)
+set_tests_properties(compilers.SeesADifference compilers.SeesSilence PROPERTIES LABELS compilers WILL_FAIL TRUE)
