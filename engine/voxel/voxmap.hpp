@@ -33,8 +33,8 @@ using Layer = std::int8_t;
 /// Small identity of a set of b-rep entities (hash-consed, see features.hpp). 0: the empty set.
 using FeatureSetId = std::uint16_t;
 
-/// brick_clearance counts bricks (Chebyshev steps) to the nearest brick with a surface voxel: + outside, - inside, 0 has
-/// one; clamped to ±127.
+/// brick_clearance counts bricks (Chebyshev steps) to the nearest brick with a surface voxel: + outside, - inside, 0
+/// has one; clamped to ±127.
 struct Voxmap {                            //  shape        unit  meaning
   Vector3d origin = Vector3d::Zero();      //               m     corner of cell (0,0,0) in body coordinates
   double voxel_size = 0;                   //               m
