@@ -66,7 +66,7 @@ void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& 
   std::array<ClusterFrame, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
   std::size_t filled = 0;
   for (const Pointshell::Cluster& cluster : b.clusters) {
-    batch[filled] = place(frame, cluster);
+    place(frame, cluster, batch[filled]);
     if (surely_outside(frame, batch[filled], cluster.radius, per_metre)) continue;
     VERISIM_ASSERT(cluster.end - cluster.begin <= static_cast<std::uint32_t>(kBrickCells));
     cost.points += cluster.end - cluster.begin;
@@ -83,7 +83,8 @@ void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, Conta
   contacts.size = 0;
   const QueryFrame f = make_query_frame(a, b, X_AB);
   for (const Pointshell::Cluster& cluster : b.clusters) {
-    const ClusterFrame c = place(f, cluster);
+    ClusterFrame c;
+    place(f, cluster, c);
     for (std::uint32_t i = c.begin; i < c.end; ++i) {
       const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);
       if (p.layer > 0) continue;

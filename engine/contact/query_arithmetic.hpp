@@ -78,8 +78,8 @@ inline std::int32_t floor_limited(double g) {
   return truncated - static_cast<std::int32_t>(static_cast<double>(truncated) > limited);
 }
 
-inline ClusterFrame place(const QueryFrame& f, const Pointshell::Cluster& cluster) {
-  ClusterFrame c{};
+/// Written in place: a returned struct would be copied in wide loads of narrow stores, which the CPU has to wait for.
+inline void place(const QueryFrame& f, const Pointshell::Cluster& cluster, ClusterFrame& c) {
   const double x = cluster.center.x();
   const double y = cluster.center.y();
   const double z = cluster.center.z();
@@ -92,7 +92,6 @@ inline ClusterFrame place(const QueryFrame& f, const Pointshell::Cluster& cluste
   }
   c.begin = cluster.begin;
   c.end = cluster.end;
-  return c;
 }
 
 inline std::int32_t clamp_cell(std::int32_t cell, std::int32_t last) { return cell < 0 ? 0 : cell > last ? last : cell; }

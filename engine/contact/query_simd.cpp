@@ -2,16 +2,39 @@
 // Every lane does what query_arithmetic.hpp does for one point, in the same order; Mul and Add stay apart because MulAdd
 // fuses on some targets only.
 //
-// Compaction goes through a register (Compress, then a whole store): the memory form of AVX-512's compress is microcode
-// on Zen 4 and 5, about a hundred cycles. So every array here has room for one more vector at its end.
+// Compaction stores whole vectors whose first lanes count, so every array here has room for one more vector at its end.
+// AVX-512's compress is used in its register form: the one that writes memory is microcode on Zen 4, a hundred cycles.
+// Narrower targets use a table of their own: Highway 1.0.3 copies its table to the stack at every call under g++ 12.
 #include "engine/contact/query_simd.hpp"
 
+#include <array>
+#include <bit>
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/contact/query_simd.cpp"
 #include "hwy/foreach_target.h"  // compiles this file once per target
 #include "hwy/highway.h"
+
+#ifndef VERISIM_CONTACT_LANES_TO_FRONT
+#define VERISIM_CONTACT_LANES_TO_FRONT
+namespace verisim {
+
+/// Row m: the lanes that are set in the mask m, in order.
+template <std::size_t lanes>
+inline constexpr auto kLanesToFront = [] {
+  std::array<std::array<std::int32_t, lanes>, std::size_t{1} << lanes> table{};
+  for (std::size_t mask = 0; mask < table.size(); ++mask) {
+    std::size_t at = 0;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if ((mask >> lane & 1) != 0) table[mask][at++] = static_cast<std::int32_t>(lane);
+    }
+  }
+  return table;
+}();
+
+}  // namespace verisim
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace verisim::HWY_NAMESPACE {
@@ -82,6 +105,42 @@ HWY_INLINE I layers_on_top(const QueryFrame& f, I slots) {
   return hn::BitCast(kI, hn::Shl(hn::BitCast(u, words), hn::BitCast(u, shift)));
 }
 
+/// Moves the lanes of a mask to the front.
+#if HWY_MAX_BYTES == 64
+class Compaction {
+ public:
+  explicit HWY_INLINE Compaction(hn::Mask<Ints> mask) : ints_(mask), floats_(hn::RebindMask(kF, mask)) {}
+  HWY_INLINE void store(F v, float* column) const { hn::StoreU(hn::Compress(v, floats_), kF, column); }
+  HWY_INLINE void store(I v, std::int32_t* column) const { hn::StoreU(hn::Compress(v, ints_), kI, column); }
+  [[nodiscard]] HWY_INLINE std::size_t count() const { return hn::CountTrue(kI, ints_); }
+
+ private:
+  hn::Mask<Ints> ints_;
+  M floats_;
+};
+#else
+class Compaction {
+ public:
+  explicit HWY_INLINE Compaction(hn::Mask<Ints> mask) : bits_(bits_of(mask)) {}
+  HWY_INLINE void store(F v, float* column) const {
+    hn::StoreU(hn::TableLookupLanes(v, hn::SetTableIndices(kF, row())), kF, column);
+  }
+  HWY_INLINE void store(I v, std::int32_t* column) const {
+    hn::StoreU(hn::TableLookupLanes(v, hn::SetTableIndices(kI, row())), kI, column);
+  }
+  [[nodiscard]] HWY_INLINE std::size_t count() const { return static_cast<std::size_t>(std::popcount(bits_)); }
+
+ private:
+  static HWY_INLINE unsigned bits_of(hn::Mask<Ints> mask) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(kI, mask, bits);
+    return bits[0];
+  }
+  [[nodiscard]] HWY_INLINE const std::int32_t* row() const { return kLanesToFront<kLanes>[bits_].data(); }
+  unsigned bits_;
+};
+#endif
+
 struct Candidates {
   static constexpr std::size_t kRoom = kBrickCells + kLanes;
   HWY_ALIGN float x[kRoom], y[kRoom], z[kRoom];  ///< local coordinates
@@ -104,22 +163,16 @@ HWY_INLINE void find_candidates(const QueryFrame& f, const Pointshell& shell, co
     const I layers = layers_on_top(f, slots);
     const auto within = hn::And(hn::Lt(layers, first_above_zero), hn::FirstN(kI, c.end - i));
     if (hn::AllFalse(kI, within)) continue;
-    const M within_f = hn::RebindMask(kF, within);
+    const Compaction front(within);
     const std::size_t at = found.size;
-    hn::StoreU(hn::Compress(local.x, within_f), kF, found.x + at);
-    hn::StoreU(hn::Compress(local.y, within_f), kF, found.y + at);
-    hn::StoreU(hn::Compress(local.z, within_f), kF, found.z + at);
-    hn::StoreU(hn::Compress(hn::Iota(kI, static_cast<std::int32_t>(i)), within), kI, found.point + at);
-    hn::StoreU(hn::Compress(slots, within), kI, found.slot + at);
-    hn::StoreU(hn::Compress(hn::ShiftRight<24>(layers), within), kI, found.layer + at);
-    found.size = at + hn::CountTrue(kI, within);
+    front.store(local.x, found.x + at);
+    front.store(local.y, found.y + at);
+    front.store(local.z, found.z + at);
+    front.store(hn::Iota(kI, static_cast<std::int32_t>(i)), found.point + at);
+    front.store(slots, found.slot + at);
+    front.store(hn::ShiftRight<24>(layers), found.layer + at);
+    found.size = at + front.count();
   }
-}
-
-HWY_INLINE void store(F v, M mask, float* column) { hn::StoreU(hn::Compress(v, mask), kF, column); }
-
-HWY_INLINE void store(I v, M mask, std::uint32_t* column) {
-  hn::StoreU(hn::Compress(v, hn::RebindMask(kI, mask)), kI, reinterpret_cast<std::int32_t*>(column));
 }
 
 HWY_INLINE void append_touching(const QueryFrame& f, const Pointshell& shell, const ClusterFrame& c,
@@ -137,19 +190,20 @@ HWY_INLINE void append_touching(const QueryFrame& f, const Pointshell& shell, co
                             hn::Mul(hn::Sub(half, hn::Sub(local.z, hn::Floor(local.z))), n.z));
     const F layer = hn::ConvertTo(kF, hn::LoadU(kI, found.layer + i));
     const F depth = hn::Mul(hn::Sub(along, layer), voxel_size);
-    const M touching = hn::And(hn::Gt(depth, hn::Zero(kF)), hn::RebindMask(kF, real));
-    if (hn::AllFalse(kF, touching)) continue;
+    const auto touching = hn::And(hn::RebindMask(kI, hn::Gt(depth, hn::Zero(kF))), real);
+    if (hn::AllFalse(kI, touching)) continue;
+    const Compaction front(touching);
     const std::size_t at = out.size;
-    store(points, touching, &out.point[at]);
-    store(hn::LoadU(kI, found.slot + i), touching, &out.slot[at]);
-    store(hn::Mul(hn::Add(hn::Set(kF, static_cast<float>(c.base[0])), local.x), voxel_size), touching, &out.x[at]);
-    store(hn::Mul(hn::Add(hn::Set(kF, static_cast<float>(c.base[1])), local.y), voxel_size), touching, &out.y[at]);
-    store(hn::Mul(hn::Add(hn::Set(kF, static_cast<float>(c.base[2])), local.z), voxel_size), touching, &out.z[at]);
-    store(n.x, touching, &out.nx[at]);
-    store(n.y, touching, &out.ny[at]);
-    store(n.z, touching, &out.nz[at]);
-    store(depth, touching, &out.depth[at]);
-    out.size += static_cast<std::uint32_t>(hn::CountTrue(kF, touching));
+    front.store(points, reinterpret_cast<std::int32_t*>(&out.point[at]));
+    front.store(hn::LoadU(kI, found.slot + i), reinterpret_cast<std::int32_t*>(&out.slot[at]));
+    front.store(hn::Mul(hn::Add(hn::Set(kF, static_cast<float>(c.base[0])), local.x), voxel_size), &out.x[at]);
+    front.store(hn::Mul(hn::Add(hn::Set(kF, static_cast<float>(c.base[1])), local.y), voxel_size), &out.y[at]);
+    front.store(hn::Mul(hn::Add(hn::Set(kF, static_cast<float>(c.base[2])), local.z), voxel_size), &out.z[at]);
+    front.store(n.x, &out.nx[at]);
+    front.store(n.y, &out.ny[at]);
+    front.store(n.z, &out.nz[at]);
+    front.store(depth, &out.depth[at]);
+    out.size += static_cast<std::uint32_t>(front.count());
   }
 }
 
