@@ -1,0 +1,37 @@
+// The last gate before a report is called valid: distance, speed, confirmation of jumps.
+#pragma once
+
+#include "engine/base/pose.hpp"
+
+namespace verisim::wii {
+
+inline constexpr double kDistanceMin = 0.2;  ///< m
+inline constexpr double kDistanceMax = 5;    ///< m
+inline constexpr double kSpeedMax = 5;       ///< m/s: heads are slower
+inline constexpr double kSilenceMax = 0.5;   ///< s: after that nothing is known of where the head went
+
+/// Decides on one candidate position after another. Constant time and size.
+class Admission {
+ public:
+  enum class Verdict { refused, continued, elsewhere };
+
+  /// `p_L` may be used as it comes (continued), is drawn back to what kSpeedMax allows since the last admitted one
+  /// (continued; when the excess is within 4 `sigma`, measuring noise and not a jump), has jumped but is the second in a
+  /// row at the new place (elsewhere), or is refused. The first one, and the first after kSilenceMax, is elsewhere.
+  /// @pre t grows from call to call
+  [[nodiscard]] Verdict judge(double t, double sigma, Vector3d& p_L);
+  void forget() { *this = {}; }
+
+ private:
+  struct Place {
+    bool set = false;
+    double t = 0;
+    Vector3d p_L = Vector3d::Zero();
+  };
+  [[nodiscard]] static bool reachable(const Place& from, double t, double slack, const Vector3d& p_L);
+
+  Place last_;       ///< admitted
+  Place candidate_;  ///< refused as a jump, waits for a second one
+};
+
+}  // namespace verisim::wii

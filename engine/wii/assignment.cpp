@@ -1,0 +1,134 @@
+#include "engine/wii/assignment.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kMemory = 0.25;       // s; a head needs longer to roll over
+constexpr double kOverturned = -0.2;   // cosine of the roll: no head is tilted by more than 101 degrees
+constexpr double kRollScale = 0.5;     // rad, about how far heads are tilted
+constexpr double kSizeScale = 1;       // blob size units
+constexpr double kLedScale = 10;       // pixel, how well an unsolved LED is where the pair says
+
+double distance_square(const Blob& a, const Blob& b) {
+  return (a.u - b.u) * (a.u - b.u) + (a.v - b.v) * (a.v - b.v);
+}
+
+/// Depth-first over all injective assignments, cut off at the best cost so far.
+struct Search {
+  const Reading& reading;
+  std::span<const Eigen::Vector2d> expected;
+  double gate_square;
+  Assignment best = {-1, -1, -1, -1};
+  double best_cost = std::numeric_limits<double>::infinity();
+  Assignment current = {-1, -1, -1, -1};
+
+  void descend(std::size_t led, unsigned used, double cost) {
+    if (cost >= best_cost) return;
+    if (led == expected.size()) {
+      best_cost = cost;
+      best = current;
+      return;
+    }
+    for (int b = 0; b < reading.blob_count; ++b) {
+      const Blob& blob = reading.blobs[static_cast<std::size_t>(b)];
+      const double d = (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm();
+      if ((used >> b & 1U) != 0 || !(d <= gate_square)) continue;
+      current[led] = b;
+      descend(led + 1, used | 1U << b, cost + d);
+    }
+    current[led] = -1;
+    descend(led + 1, used, cost + gate_square);
+  }
+};
+
+}  // namespace
+
+Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vector2d> expected, double gate) {
+  Search search{reading, expected, gate * gate};
+  search.descend(0, 0, 0);
+  return search.best;
+}
+
+PairFollower::PairFollower(const LedLayout& leds, const Pinhole& pinhole)
+    : leds_(leds), pinhole_(pinhole), pair_{leds.p_H[0], leds.p_H[1]} {}
+
+PairFollower::Match PairFollower::solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const {
+  const Blob& b0 = reading.blobs[static_cast<std::size_t>(first)];
+  const Blob& b1 = reading.blobs[static_cast<std::size_t>(second)];
+  return {solve_two_points(pair_, pinhole_.ray(b0.u, b0.v), pinhole_.ray(b1.u, b1.v), C_LR), {first, second}};
+}
+
+PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) const {
+  if (reading.blob_count < 2) return {};
+  if (followed_ && t - t_ <= kMemory) {
+    const Match match = continue_pair(reading, C_LR);
+    if (match.found() && match.pose.cos_roll > kOverturned) return match;
+  }
+  return acquire(reading, C_LR);
+}
+
+PairFollower::Match PairFollower::continue_pair(const Reading& reading, const Matrix3d& C_LR) const {
+  // Half their spacing is further than a head moves between reports (5 m/s at any distance) and nearer than a swap.
+  const double gate_square = 400 + 0.25 * distance_square(last_[0], last_[1]);
+  std::array<int, 2> best = {-1, -1};
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < reading.blob_count; ++i) {
+    const double cost0 = distance_square(reading.blobs[static_cast<std::size_t>(i)], last_[0]);
+    if (cost0 > gate_square) continue;
+    for (int j = 0; j < reading.blob_count; ++j) {
+      const double cost1 = distance_square(reading.blobs[static_cast<std::size_t>(j)], last_[1]);
+      if (i == j || cost1 > gate_square || cost0 + cost1 >= best_cost) continue;
+      best = {i, j};
+      best_cost = cost0 + cost1;
+    }
+  }
+  return best[0] < 0 ? Match{} : solve(reading, best[0], best[1], C_LR);
+}
+
+PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
+  Match best;
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < reading.blob_count; ++i)
+    for (int j = 0; j < reading.blob_count; ++j) {
+      if (i == j) continue;
+      const Match match = solve(reading, i, j, C_LR);
+      if (!match.found() || match.pose.cos_roll <= 0) continue;
+      const double cost = unlikeliness(reading, match, C_LR);
+      if (cost >= best_cost) continue;
+      best = match;
+      best_cost = cost;
+    }
+  return best;
+}
+
+double PairFollower::unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
+  const TwoPointPose& pose = match.pose;
+  const auto size = [&](std::size_t i) { return reading.blobs[static_cast<std::size_t>(match.blob[i])].size; };
+  const double roll = pose.sin_roll / kRollScale;
+  const double unequal = (size(0) - size(1)) / kSizeScale;
+  double cost = roll * roll + unequal * unequal;
+  const Matrix3d R_LH = rotation_about_z(pose.cos_roll, pose.sin_roll).toRotationMatrix();
+  for (std::size_t led = 2; led < static_cast<std::size_t>(leds_.count); ++led) {
+    const Vector3d p_R = C_LR.transpose() * (pose.p_L + R_LH * leds_.p_H[led]);
+    if (p_R.z() <= 0) continue;
+    const Eigen::Vector2d pixel = pinhole_.project(p_R);
+    double nearest = kWidth * kWidth;
+    for (int b = 0; b < reading.blob_count; ++b)
+      if (b != match.blob[0] && b != match.blob[1])
+        nearest = std::min(
+            nearest, distance_square(reading.blobs[static_cast<std::size_t>(b)], Blob{pixel.x(), pixel.y(), 0}));
+    cost += std::min(nearest / (kLedScale * kLedScale), 100.0);
+  }
+  return cost;
+}
+
+void PairFollower::follow(double t, const Reading& reading, const Match& match) {
+  followed_ = true;
+  t_ = t;
+  for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];
+}
+
+}  // namespace verisim::wii

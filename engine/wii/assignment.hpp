@@ -1,0 +1,52 @@
+// Which blob is which LED. The remote hands its slots out as blobs come and go, and exchanges them at will; a lamp may
+// hold one. Only the picture counts, never the slot number.
+#pragma once
+
+#include <array>
+
+#include "engine/wii/tracker.hpp"
+#include "engine/wii/two_point.hpp"
+
+namespace verisim::wii {
+
+/// Blob index of each LED, -1 where it is not seen.
+using Assignment = std::array<int, kLedsMax>;
+
+/// The assignment whose blobs lie nearest to where the LEDs are expected (sum of squared pixel distances, none beyond
+/// `gate` pixels; an LED left out costs gate^2). All injective assignments are compared: at most 209.
+/// @pre expected holds a pixel for each of `led_count` LEDs
+[[nodiscard]] Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vector2d> expected,
+                                            double gate);
+
+/// Follows the first two LEDs through swaps, ghosts and short losses. Fixed size, no allocation.
+class PairFollower {
+ public:
+  PairFollower(const LedLayout& leds, const Pinhole& pinhole);
+
+  struct Match {
+    TwoPointPose pose;
+    std::array<int, 2> blob = {-1, -1};
+    [[nodiscard]] bool found() const { return pose.found; }
+  };
+  /// The pair nearest to the followed one while that is younger than 0.25 s; else, or when that one stands on its head,
+  /// the pair that looks most like a head: upright in L, equally large, further LEDs where they must be.
+  [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR) const;
+  /// Follow these two from now on.
+  void follow(double t, const Reading& reading, const Match& match);
+  void forget() { followed_ = false; }
+
+ private:
+  [[nodiscard]] Match solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const;
+  [[nodiscard]] Match continue_pair(const Reading& reading, const Matrix3d& C_LR) const;
+  [[nodiscard]] Match acquire(const Reading& reading, const Matrix3d& C_LR) const;
+  [[nodiscard]] double unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const;
+
+  LedLayout leds_;
+  Pinhole pinhole_;
+  LedPair pair_;
+  bool followed_ = false;
+  double t_ = 0;
+  std::array<Blob, 2> last_;
+};
+
+}  // namespace verisim::wii

@@ -1,0 +1,40 @@
+#include "engine/wii/gravity.hpp"
+
+#include <cmath>
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kShaken = 0.3;        // g
+constexpr double kDirectionMin = 0.1;  // g; opposed readings can average to nothing
+
+}  // namespace
+
+Matrix3d levelling(const Vector3d& up_R) {
+  const Vector3d up = up_R.normalized();
+  const double cos_p = std::sqrt(up.x() * up.x() + up.y() * up.y());
+  const double sin_p = up.z();
+  const bool upright = cos_p > 1e-9;
+  const double cos_r = upright ? up.y() / cos_p : 1;
+  const double sin_r = upright ? up.x() / cos_p : 0;
+  Matrix3d C;
+  C << cos_r, -sin_r, 0,                               //
+      cos_p * sin_r, cos_p * cos_r, sin_p,             // = up
+      -sin_p * sin_r, -sin_p * cos_r, cos_p;
+  return C;
+}
+
+void GravityFilter::add(double dt, const Vector3d& force_R) {
+  if (!known_) {
+    up_R_ = force_R;
+  } else {
+    if (force_R == up_R_ || std::abs(force_R.norm() - 1) > kShaken) return;
+    const double weight = dt / (time_constant_ + dt);
+    const Vector3d mixed = up_R_ + weight * (force_R - up_R_);
+    up_R_ = mixed.norm() < kDirectionMin ? force_R : mixed;
+  }
+  known_ = true;
+  C_LR_ = levelling(up_R_);
+}
+
+}  // namespace verisim::wii

@@ -1,0 +1,35 @@
+// From the accelerometer to levelled coordinates L: +y opposed to gravity, +z the horizontal projection of the lens
+// axis, +x = y x z, origin at the pinhole (reference/wii/README.md). Heading is not observable; this choice keeps it the
+// remote's own.
+#pragma once
+
+#include "engine/base/pose.hpp"
+
+namespace verisim::wii {
+
+/// C_LR with v_L = C_LR v_R = Rx(-pitch) Rz(roll) v_R, from any vector along "up" in R. No trigonometry.
+/// A lens that points straight up or down has no horizontal projection: roll is then taken as 0.
+/// @pre up_R is finite and not zero
+[[nodiscard]] Matrix3d levelling(const Vector3d& up_R);
+
+/// The direction of gravity, smoothed: readings count for about `time_constant`, the first one at once; readings whose
+/// length says that the remote is shaken (outside 1 +- 0.3 g) are left out once a direction is known.
+class GravityFilter {
+ public:
+  explicit GravityFilter(double time_constant) : time_constant_(time_constant) {}
+
+  /// One reading [g], `dt` seconds after the one before. Constant time, no allocation.
+  void add(double dt, const Vector3d& force_R);
+  void forget() { known_ = false; }
+
+  [[nodiscard]] bool known() const { return known_; }
+  [[nodiscard]] const Matrix3d& C_LR() const { return C_LR_; }  ///< @pre known()
+
+ private:
+  double time_constant_;
+  bool known_ = false;
+  Vector3d up_R_ = Vector3d::UnitY();
+  Matrix3d C_LR_ = Matrix3d::Identity();
+};
+
+}  // namespace verisim::wii

@@ -1,0 +1,84 @@
+#include "engine/wii/tracker_base.hpp"
+
+#include <cmath>
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kBackMax = 1;  // s; a clock that goes further back belongs to a new recording
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TrackerBase::TrackerBase(const TrackerSettings& settings)
+    : settings_(settings),
+      pinhole_(settings.fov),
+      gravity_{GravityFilter(settings.gravity_time_constant), GravityFilter(settings.gravity_time_constant)},
+      last_t_{kNever, kNever} {
+  report_.pose.position.setConstant(std::numeric_limits<double>::quiet_NaN());
+  report_.pose.rotation.coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
+  report_.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+bool TrackerBase::accept_time(double t, int remote, double& dt) {
+  if (!std::isfinite(t)) return false;
+  double& last = last_t_[static_cast<std::size_t>(remote)];
+  if (t < last - kBackMax) {
+    last_t_.fill(kNever);
+    for (GravityFilter& gravity : gravity_) gravity.forget();
+    admission_.forget();
+    restart();
+  } else if (t <= last) {
+    return false;
+  }
+  dt = std::isfinite(last) ? t - last : 0;
+  last = t;
+  return true;
+}
+
+const Report& TrackerBase::update(double t, std::span<const double> channels, int remote) {
+  VERISIM_ASSERT(remote >= 0);
+  VERISIM_ASSERT(remote < kRemotes);
+  report_.news = false;
+  report_.reacquired = false;
+  Reading reading;
+  double dt = 0;
+  if (!read_channels(channels, reading) || !accept_time(t, remote, dt)) return report_;
+
+  GravityFilter& gravity = gravity_[static_cast<std::size_t>(remote)];
+  if (reading.force_known) gravity.add(dt, reading.force_R);
+  Estimate result;
+  if (gravity.known()) estimate(t, dt, reading, remote, result);
+  if (reports(t, remote)) conclude(t, result);
+  return report_;
+}
+
+void TrackerBase::conclude(double t, Estimate& result) {
+  const bool was_valid = report_.valid;
+  Admission::Verdict verdict = Admission::Verdict::refused;
+  if (result.usable) {
+    const Vector3d measured = result.pose.position;
+    const double sigma = std::sqrt(result.covariance.diagonal().head<3>().maxCoeff());
+    verdict = admission_.judge(t, sigma, result.pose.position);
+    const Vector3d drawn = result.pose.position - measured;
+    result.covariance.topLeftCorner<3, 3>() += drawn * drawn.transpose();
+  }
+  report_.t = t;
+  report_.news = true;
+  report_.valid = verdict != Admission::Verdict::refused;
+  report_.reacquired = report_.valid && (!was_valid || verdict == Admission::Verdict::elsewhere);
+  if (report_.valid || (result.known && !result.usable)) {
+    report_.pose = result.pose;
+    report_.covariance = result.covariance;
+  }
+  admitted(t, report_.valid);
+}
+
+const Report& TrackerBase::heartbeat(double t) {
+  report_.news = false;
+  report_.reacquired = false;
+  if (!(t - report_.t <= kSilenceMax)) report_.valid = false;
+  return report_;
+}
+
+}  // namespace verisim::wii

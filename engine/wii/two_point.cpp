@@ -1,0 +1,52 @@
+#include "engine/wii/two_point.hpp"
+
+#include <cmath>
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kForwardMin = 0.2;  // least z_L of a ray: steeper ones are nearly parallel to the plane they must cross
+
+}  // namespace
+
+TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R,
+                              const Matrix3d& C_LR) {
+  TwoPointPose result;
+  const Vector3d q0 = C_LR * ray0_R;
+  const Vector3d q1 = C_LR * ray1_R;
+  if (q0.z() < kForwardMin || q1.z() < kForwardMin) return result;
+
+  // The z row of the equation gives Z1 = (Z0 q0z - dz) / q1z, its x and y rows |Z0 A + B| = |d_xy|: a quadratic in Z0.
+  const Vector3d d = leds.p0_H - leds.p1_H;
+  const double ratio = q0.z() / q1.z();
+  const Eigen::Vector2d A = q0.head<2>() - ratio * q1.head<2>();
+  const Eigen::Vector2d B = d.z() / q1.z() * q1.head<2>();
+  const double across = d.head<2>().squaredNorm();
+  const double a = A.squaredNorm();
+  const double b = A.dot(B);
+  const double discriminant = b * b - a * (B.squaredNorm() - across);
+  if (!(a > 0) || !(discriminant >= 0)) return result;
+  result.depth = (std::sqrt(discriminant) - b) / a;
+  if (!(result.depth > 0)) return result;
+
+  const Eigen::Vector2d e = result.depth * A + B;  // = Rz(roll) d, its x and y
+  result.cos_roll = (d.x() * e.x() + d.y() * e.y()) / across;
+  result.sin_roll = (d.x() * e.y() - d.y() * e.x()) / across;
+  const Vector3d& p = leds.p0_H;
+  result.p_L = result.depth * q0 - Vector3d{result.cos_roll * p.x() - result.sin_roll * p.y(),
+                                            result.sin_roll * p.x() + result.cos_roll * p.y(), p.z()};
+  result.found = true;
+  return result;
+}
+
+Quaterniond rotation_about_z(double cos_angle, double sin_angle) {
+  // Half angles by square roots; the larger half first, so that neither loses digits.
+  if (cos_angle >= 0) {
+    const double w = std::sqrt((1 + cos_angle) / 2);
+    return Quaterniond{w, 0, 0, sin_angle / (2 * w)}.normalized();
+  }
+  const double z = std::copysign(std::sqrt((1 - cos_angle) / 2), sin_angle);
+  return Quaterniond{sin_angle / (2 * z), 0, 0, z}.normalized();
+}
+
+}  // namespace verisim::wii
