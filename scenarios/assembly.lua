@@ -1,7 +1,7 @@
 -- Any assembly: one of its parts is held, pulled out along a direction, and pushed back.
---   verisim run scenarios/assembly.lua --set model=bearing.stp --set part=1 --set direction='{0,0,1}'
+--   verisim run scenarios/assembly.lua --set model=bearing.stp --set part=2 --set direction='{1,0,0}'
 local p = params{
-  model = "assembly.step",  -- STEP, BREP, or a mesh file
+  model = "assembly.step",  -- STEP, BREP or a mesh file, or several with commas between them
   scale = 0,                -- metres per unit of a mesh file; 0: the file's own unit
   part = 1,                 -- which solid is held, counted from 1 in file order, or its name
   direction = {0, 0, 1},    -- of pulling
@@ -13,7 +13,12 @@ local p = params{
 }
 
 local options = p.scale > 0 and {scale = p.scale} or {}
-local parts = modelParts(p.model, options)
+local parts = {}
+for file in p.model:gmatch("[^,]+") do
+  for i, part in ipairs(modelParts(file, options)) do
+    parts[#parts + 1] = {name = part.name, bounds = part.bounds, file = file, index = i}
+  end
+end
 local held
 local low, high = {math.huge, math.huge, math.huge}, {-math.huge, -math.huge, -math.huge}
 for i, part in ipairs(parts) do
@@ -40,7 +45,7 @@ local body
 for i, part in ipairs(parts) do
   local object = addObject{
     name = part.name, density = 7800, voxelsize = voxelsize, fixed = i ~= held,
-    Model{p.model, part = i, scale = options.scale},
+    Model{part.file, part = part.index, scale = options.scale},
   }
   if i == held then body = object end
 end

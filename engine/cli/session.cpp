@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
@@ -44,7 +45,10 @@ std::vector<std::string> named_paths(const ScenarioOptions& options) {
     std::error_code error;
     if (std::filesystem::exists(value, error)) paths.push_back(value);
   };
-  for (const auto& [key, value] : options.sets) add_if_there(value);
+  for (const auto& [key, value] : options.sets) {
+    std::istringstream list(value);  // one file, or several with commas between them
+    for (std::string file; std::getline(list, file, ',');) add_if_there(file);
+  }
   for (const auto& [name, source] : options.binds) add_if_there(source);
   return paths;
 }

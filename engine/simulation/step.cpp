@@ -130,11 +130,14 @@ void Simulation::Implementation::respond() {
     if (body.links_touching > 0) body.link_body.budget = left / body.links_touching;
   }
   const bool implicit = parameters.integrator == Integrator::implicit;
-  const PenaltyParameters penalty{parameters.contact_stiffness, parameters.contact_damping_ratio, !implicit};
+  PenaltyParameters penalty{parameters.contact_stiffness, parameters.contact_damping_ratio, true};
   for (Link& link : links) {
     if (!link.contact || link.contact->contacts().size == 0) continue;
     const LinkBody& first = bodies[link.first].link_body;
     const LinkBody& second = bodies[link.second].link_body;
+    // An implicit step takes the other body as standing still in its own step: of two that move, each would answer with
+    // another force. Only against what does not move may the stiffness go beyond the explicit bound.
+    penalty.stabilize = !implicit || (!first.inverse_mass.isZero(0) && !second.inverse_mass.isZero(0));
     link.contact->respond(first, second, penalty, dt);
     link.contact->sum_up(first, second, implicit);
     const auto add = [](Loads& loads, const LinkSide& side) {

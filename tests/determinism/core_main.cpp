@@ -1,12 +1,13 @@
-// A body pulled by a spring for ten thousand steps, and the hash of where it ends.
+// Runs the core scenes and prints one line each: built by two compilers at three levels, all must print the same.
 #include <cstdio>
 
 #include "engine/base/hash.hpp"
-#include "engine/base/pose.hpp"
+#include "tests/determinism/core_scenes.hpp"
 
 int main() {
-  verisim::Vector3d w{0.1, 0.2, 0.3};
-  verisim::Quaterniond q = verisim::Quaterniond::Identity();
-  for (int i = 0; i < 10000; ++i) q = (q * verisim::rotation_from_vector(w * (1.0 / (i + 1)))).normalized();
-  std::puts(verisim::to_hex(verisim::hash_bytes(q.coeffs().data(), 32, 0)).c_str());
+  for (const verisim::determinism::CoreScene& scene : verisim::determinism::core_scenes()) {
+    const verisim::determinism::CoreResult result = run_core(scene, 1);
+    std::printf("%-24s %s %llu contacts\n", scene.name.c_str(), verisim::to_hex(result.hash).c_str(),
+                static_cast<unsigned long long>(result.contacts));
+  }
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/base/pinned_math.hpp"
 #include "engine/geometry/mesh.hpp"
 
 namespace verisim::shapes {
@@ -70,7 +71,7 @@ inline TriangleMesh in_four(const TriangleMesh& mesh) {
 
 inline std::array<double, 2> on_circle(int i, int facets) {
   const double angle = 2 * std::numbers::pi * i / facets;
-  return {std::cos(angle), std::sin(angle)};
+  return {pinned::cos(angle), pinned::sin(angle)};
 }
 
 /// A prism of n facets inscribed in the cylinder of the given radius about z, from z = 0 to `height`.

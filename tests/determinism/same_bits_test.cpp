@@ -1,0 +1,68 @@
+// INTERFACES section 2: same input, same bits, whatever the threads and the vector width; and the golden hashes, which
+// change only in a commit that says which behaviour changed and why.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "engine/base/hash.hpp"
+#include "engine/contact/query.hpp"
+#include "tests/determinism/core_scenes.hpp"
+
+namespace verisim::determinism {
+namespace {
+
+/// Restores free dispatch when a test ends.
+struct AnySimdTarget {
+  ~AnySimdTarget() { use_simd_target(""); }
+};
+
+TEST(SameBits, OnEverySimdTargetAndNumberOfThreads) {
+  const AnySimdTarget restore;
+  for (const CoreScene& scene : core_scenes()) {
+    use_simd_target("scalar");
+    const CoreResult plain = run_core(scene, 1);
+    ASSERT_GT(plain.contacts, 0U) << scene.name << ": nothing ever touched: this test would prove nothing";
+    for (const std::string& target : simd_targets()) {
+      use_simd_target(target);
+      for (const unsigned threads : {1U, 2U})
+        EXPECT_EQ(run_core(scene, threads), plain)
+            << scene.name << " on " << target << " with " << threads << " threads";
+    }
+  }
+}
+
+struct Golden {
+  const char* hash;
+  std::uint64_t collision_frames;  ///< a physical fact beside the bits: it survives harmless changes
+};
+
+const std::map<std::string, Golden> kGolden = {
+    {"pin_in_hole", {"976de979b77bc2bf", 735}},
+    {"pin_in_hole_implicit", {"5b19f4d583df19f7", 729}},
+    {"falling_boxes", {"7424e456a62909d0", 440}},
+    {"falling_boxes_implicit", {"2977c92cf703ab78", 440}},
+};
+
+TEST(SameBits, AsWhenTheGoldenHashesWereWritten) {
+  for (const CoreScene& scene : core_scenes()) {
+    const CoreResult result = run_core(scene, 1);
+    EXPECT_EQ(to_hex(result.hash), kGolden.at(scene.name).hash) << scene.name;
+    EXPECT_EQ(result.collision_frames, kGolden.at(scene.name).collision_frames) << scene.name;
+  }
+}
+
+// The alarm itself: one bit of the input changes the hash.
+TEST(SameBits, OneBitOfTheInputIsSeen) {
+  CoreScene scene = core_scenes().front();
+  const CoreResult before = run_core(scene, 1);
+  const auto make = scene.make;
+  scene.make = [make] {
+    Scene changed = make();
+    changed.bodies[1].density = std::nextafter(changed.bodies[1].density, 1e9);
+    return changed;
+  };
+  EXPECT_NE(run_core(scene, 1).hash, before.hash);
+}
+
+}  // namespace
+}  // namespace verisim::determinism
