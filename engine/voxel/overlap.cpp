@@ -27,7 +27,7 @@ TriangleOverlap::TriangleOverlap(const Vector3d& a, const Vector3d& b, const Vec
   normal_low_ = std::min({na, nb, nc});
   normal_high_ = std::max({na, nb, nc});
   for (std::size_t plane = 0; plane < 3; ++plane) {
-    const auto [u, v] = kPlanes[plane];
+    const int u = kPlanes[plane][0], v = kPlanes[plane][1];
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d edge = *corners[(i + 1) % 3] - *corners[i];
       FlatAxis& axis = axes_[plane][i];
@@ -49,7 +49,7 @@ TriangleOverlap::Range TriangleOverlap::overlapped(double low, double high, doub
 }
 
 std::uint64_t TriangleOverlap::pattern(int plane, const BoxLattice& lattice, Range u, Range v) const {
-  const auto [axis_u, axis_v] = kPlanes[static_cast<std::size_t>(plane)];
+  const int axis_u = kPlanes[static_cast<std::size_t>(plane)][0], axis_v = kPlanes[static_cast<std::size_t>(plane)][1];
   const auto center_u = [&](int i) { return lattice.corner[axis_u] + (i + 0.5) * lattice.side; };
   const auto center_v = [&](int i) { return lattice.corner[axis_v] + (i + 0.5) * lattice.side; };
   std::uint64_t bits = 0;
