@@ -115,7 +115,7 @@ struct Edge {
   std::array<double, 2> t_range = {0, 0};  ///< trimmed bounds in the curve's parameter
   double length = 0;                       ///< m
   std::vector<Vector3d> polyline;          ///< points along the edge, as the tessellation has them
-  std::vector<std::uint32_t> faces;        ///< the one or two faces that it bounds
+  std::vector<std::uint32_t> faces;        ///< the two faces that it bounds; one: a seam, where a round face meets itself
 };
 
 }  // namespace verisim

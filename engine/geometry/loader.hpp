@@ -1,9 +1,10 @@
-// Reads models into parts. STEP, BREP and Solids go through OpenCASCADE in a child process (program verisim-cad beside
-// this one): the kernel is not thread-safe, some files crash it, and a crash there must be bad input here. STL, OBJ, PLY
-// and glTF go through assimp.
+// Reads models into parts, in a child process (program verisim-cad beside this one): STEP, BREP and Solids through
+// OpenCASCADE, STL, OBJ, PLY and glTF through assimp. Neither is thread-safe for us, some files crash the one or make the
+// other read for ever, and both must be bad input here. About 20 ms for starting the program.
 //
-// Errors: Error(input) naming the file, what is wrong and what to do: missing, empty, truncated, no solid in it, NaN,
-// open or self-intersecting mesh (unless options.brep_required is off and the caller accepts repair notes).
+// Errors: Error(input) naming the file, what is wrong and what to do: empty, truncated, damaged, no solid or triangle in
+// it, NaN. A mesh that stays open, non-manifold or self-intersecting after repair loads: its part is not watertight and
+// its notes say what is wrong, where and what to do. Error(io) if verisim-cad is missing or a file cannot be written.
 #pragma once
 
 #include <string>
@@ -21,7 +22,7 @@ struct LoadOptions {
   double angular_deflection = 0.1;  ///< rad
 };
 
-/// One part per solid, in file order. Coordinates coming from the CAD kernel are rounded to 2^-36 m and derived numbers
+/// One part per solid, in file order; of a mesh file one part, or one per named object if each of them is closed. Coordinates coming from the CAD kernel are rounded to 2^-36 m and derived numbers
 /// to 40 bits, so that the kernel's last-bit differences between CPUs do not reach a state hash.
 /// `content` is the file's bytes (already read by the caller, who records them); `path` gives format and error texts.
 [[nodiscard]] std::vector<Part> load_model(const std::string& path, const std::string& content, const LoadOptions& options);

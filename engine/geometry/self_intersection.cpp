@@ -19,10 +19,12 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 class Crossings {
  public:
-  explicit Crossings(const TriangleMesh& mesh) : mesh_(mesh) {}
+  explicit Crossings(const TriangleMesh& mesh) : mesh_(mesh), shallow_(bounds_of(mesh).size().norm() / 2000) {}
 
-  /// Do triangles s and t meet elsewhere than along the corners and edges that they share?
+  /// Do triangles s and t meet elsewhere than along the corners and edges that they share, one of them reaching through
+  /// the other's plane by more than tessellations are exact?
   [[nodiscard]] bool cross(const Triangle& s, const Triangle& t) const {
+    if (reach(s, t) <= std::min(shallow_, 0.05 * std::max(longest_side(s), longest_side(t)))) return false;
     // Corners that both have come first, in both in the same order: then the cases differ by their number alone.
     Triangle a = s;
     Triangle b = t;
@@ -35,7 +37,6 @@ class Crossings {
       ++shared;
     }
     if (shared >= 2) return false;  // on a common edge they cross only if they lie in one plane
-    if (in_one_plane(a, b)) return false;
     if (shared == 1) {
       return CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(b[1]), point(b[2]))) ||
              CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(a[1]), point(a[2])));
@@ -44,10 +45,25 @@ class Crossings {
   }
 
  private:
-  [[nodiscard]] bool in_one_plane(const Triangle& a, const Triangle& b) const {
-    return std::all_of(b.begin(), b.end(), [&](std::uint32_t corner) {
-      return CGAL::coplanar(point(a[0]), point(a[1]), point(a[2]), point(corner));
-    });
+  /// How far one triangle reaches to both sides of the other's plane. Zero for two in one plane.
+  [[nodiscard]] double reach(const Triangle& s, const Triangle& t) const {
+    return std::max(reach_through(s, t), reach_through(t, s));
+  }
+  [[nodiscard]] double reach_through(const Triangle& plane, const Triangle& t) const {
+    const auto& v = mesh_.vertices;
+    const Vector3d normal = (v[plane[1]] - v[plane[0]]).cross(v[plane[2]] - v[plane[0]]).normalized();
+    double above = 0;
+    double below = 0;
+    for (const std::uint32_t corner : t) {
+      const double height = normal.dot(v[corner] - v[plane[0]]);
+      above = std::max(above, height);
+      below = std::max(below, -height);
+    }
+    return std::min(above, below);
+  }
+  [[nodiscard]] double longest_side(const Triangle& t) const {
+    const auto& v = mesh_.vertices;
+    return std::max({(v[t[0]] - v[t[1]]).norm(), (v[t[1]] - v[t[2]]).norm(), (v[t[2]] - v[t[0]]).norm()});
   }
   [[nodiscard]] Kernel::Point_3 point(std::uint32_t i) const {
     const Vector3d& p = mesh_.vertices[i];
@@ -56,6 +72,7 @@ class Crossings {
   [[nodiscard]] Kernel::Triangle_3 triangle(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
 
   const TriangleMesh& mesh_;
+  double shallow_;  // m, as deep as the default tessellation of a CAD part is exact
 };
 
 std::vector<Box> boxes_of(const TriangleMesh& mesh) {

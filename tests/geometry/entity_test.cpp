@@ -40,7 +40,7 @@ void expect_triangles_look_outward(const Part& part) {
     const double longest =
         std::max({(v[j] - v[i]).squaredNorm(), (v[k] - v[j]).squaredNorm(), (v[i] - v[k]).squaredNorm()});
     if (!on || normal.norm() < 0.05 * longest) continue;
-    ASSERT_GT(normal.normalized().dot(on->outward), 0.5) << "triangle " << t;
+    ASSERT_GT(normal.normalized().dot(on->outward), 0.3) << "triangle " << t;
   }
 }
 
@@ -142,7 +142,8 @@ class EveryFile : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(EveryFile, HasEntitiesThatAgreeWithItsTriangles) {
   if (!testing::models_are_here()) GTEST_SKIP() << "the shared models are not here: " << testing::model_path("");
-  for (const Part& part : testing::load(testing::model_path(GetParam()))) {
+  // Coarse: entities do not depend on the tessellation, and a sphere has a ninth of the triangles.
+  for (const Part& part : testing::load(testing::model_path(GetParam()), {.angular_deflection = 0.3})) {
     SCOPED_TRACE(part.name);
     expect_sound(part, sewn_slack(part));
   }
