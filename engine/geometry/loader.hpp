@@ -22,8 +22,9 @@ struct LoadOptions {
   double angular_deflection = 0.1;  ///< rad
 };
 
-/// One part per solid, in file order; of a mesh file one part, or one per named object if each of them is closed. Coordinates coming from the CAD kernel are rounded to 2^-36 m and derived numbers
-/// to 40 bits, so that the kernel's last-bit differences between CPUs do not reach a state hash.
+/// One part per solid, in file order; of a mesh file one part, or one per named object if each of them is closed.
+/// Coordinates coming from the CAD kernel are rounded to 2^-36 m and derived numbers to 40 bits, so that the kernel's
+/// last-bit differences between CPUs do not reach a state hash.
 /// `content` is the file's bytes (already read by the caller, who records them); `path` gives format and error texts.
 [[nodiscard]] std::vector<Part> load_model(const std::string& path, const std::string& content, const LoadOptions& options);
 
