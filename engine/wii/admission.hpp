@@ -16,8 +16,8 @@ class Admission {
   enum class Verdict { refused, continued, elsewhere };
 
   /// `p_L` may be used as it comes (continued), is drawn back to what kSpeedMax allows since the last admitted one
-  /// (continued; when the excess is within 4 `sigma`, measuring noise and not a jump), has jumped but is the second in a
-  /// row at the new place (elsewhere), or is refused. The first one, and the first after kSilenceMax, is elsewhere.
+  /// (continued; when the excess is within 4 `sigma`, measuring noise and not a jump), has jumped but is the second in
+  /// a row at the new place (elsewhere), or is refused. The first one, and the first after kSilenceMax, is elsewhere.
   /// @pre t grows from call to call
   [[nodiscard]] Verdict judge(double t, double sigma, Vector3d& p_L);
   void forget() { *this = {}; }

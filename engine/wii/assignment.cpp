@@ -6,11 +6,13 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kMemory = 0.25;       // s; a head needs longer to roll over
-constexpr double kOverturned = -0.2;   // cosine of the roll: no head is tilted by more than 101 degrees
-constexpr double kRollScale = 0.5;     // rad, about how far heads are tilted
-constexpr double kSizeScale = 1;       // blob size units
-constexpr double kLedScale = 10;       // pixel, how well an unsolved LED is where the pair says
+constexpr double kMemory = 0.25;           // s; a head needs longer to roll over
+constexpr double kPixelsPerSecond = 2000;  // 1.5 m/s at 1 m, for gaps of some reports
+constexpr double kStranger = 12;           // pixel; lamps stand still, unless the remote is moved
+constexpr double kOverturned = -0.2;       // cosine of the roll: no head is tilted by more than 101 degrees
+constexpr double kRollScale = 0.5;         // rad, about how far heads are tilted
+constexpr double kSizeScale = 1;           // blob size units
+constexpr double kLedScale = 10;           // pixel, how well an unsolved LED is where the pair says
 
 double distance_square(const Blob& a, const Blob& b) {
   return (a.u - b.u) * (a.u - b.u) + (a.v - b.v) * (a.v - b.v);
@@ -64,36 +66,43 @@ PairFollower::Match PairFollower::solve(const Reading& reading, int first, int s
 PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) const {
   if (reading.blob_count < 2) return {};
   if (followed_ && t - t_ <= kMemory) {
-    const Match match = continue_pair(reading, C_LR);
-    if (match.found() && match.pose.cos_roll > kOverturned) return match;
+    const Match match = continue_pair(t - t_, reading, C_LR);
+    if (!match.found() || match.pose.cos_roll > kOverturned) return match;
   }
   return acquire(reading, C_LR);
 }
 
-PairFollower::Match PairFollower::continue_pair(const Reading& reading, const Matrix3d& C_LR) const {
+PairFollower::Match PairFollower::continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const {
   // Half their spacing is further than a head moves between reports (5 m/s at any distance) and nearer than a swap.
-  const double gate_square = 400 + 0.25 * distance_square(last_[0], last_[1]);
+  const double way = kPixelsPerSecond * age;
+  const double gate_square = 400 + 0.25 * distance_square(last_[0], last_[1]) + way * way;
+  const auto cost = [&](int b, std::size_t led) {
+    const Blob& blob = reading.blobs[static_cast<std::size_t>(b)];
+    const double moved = distance_square(blob, last_[led]);
+    const bool likelier_a_lamp = distance_square_to_stranger(blob) < moved;
+    return moved > gate_square || likelier_a_lamp ? std::numeric_limits<double>::infinity() : moved;
+  };
   std::array<int, 2> best = {-1, -1};
   double best_cost = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < reading.blob_count; ++i) {
-    const double cost0 = distance_square(reading.blobs[static_cast<std::size_t>(i)], last_[0]);
-    if (cost0 > gate_square) continue;
+  for (int i = 0; i < reading.blob_count; ++i)
     for (int j = 0; j < reading.blob_count; ++j) {
-      const double cost1 = distance_square(reading.blobs[static_cast<std::size_t>(j)], last_[1]);
-      if (i == j || cost1 > gate_square || cost0 + cost1 >= best_cost) continue;
+      const double both = i == j ? std::numeric_limits<double>::infinity() : cost(i, 0) + cost(j, 1);
+      if (both >= best_cost) continue;
       best = {i, j};
-      best_cost = cost0 + cost1;
+      best_cost = both;
     }
-  }
   return best[0] < 0 ? Match{} : solve(reading, best[0], best[1], C_LR);
 }
 
 PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
+  const auto stranger = [&](int b) {
+    return distance_square_to_stranger(reading.blobs[static_cast<std::size_t>(b)]) < kStranger * kStranger;
+  };
   Match best;
   double best_cost = std::numeric_limits<double>::infinity();
   for (int i = 0; i < reading.blob_count; ++i)
     for (int j = 0; j < reading.blob_count; ++j) {
-      if (i == j) continue;
+      if (i == j || stranger(i) || stranger(j)) continue;
       const Match match = solve(reading, i, j, C_LR);
       if (!match.found() || match.pose.cos_roll <= 0) continue;
       const double cost = unlikeliness(reading, match, C_LR);
@@ -102,6 +111,13 @@ PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d
       best_cost = cost;
     }
   return best;
+}
+
+double PairFollower::distance_square_to_stranger(const Blob& blob) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < stranger_count_; ++i)
+    nearest = std::min(nearest, distance_square(blob, strangers_[static_cast<std::size_t>(i)]));
+  return nearest;
 }
 
 double PairFollower::unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
@@ -118,8 +134,8 @@ double PairFollower::unlikeliness(const Reading& reading, const Match& match, co
     double nearest = kWidth * kWidth;
     for (int b = 0; b < reading.blob_count; ++b)
       if (b != match.blob[0] && b != match.blob[1])
-        nearest = std::min(
-            nearest, distance_square(reading.blobs[static_cast<std::size_t>(b)], Blob{pixel.x(), pixel.y(), 0}));
+        nearest = std::min(nearest,
+                           distance_square(reading.blobs[static_cast<std::size_t>(b)], Blob{pixel.x(), pixel.y(), 0}));
     cost += std::min(nearest / (kLedScale * kLedScale), 100.0);
   }
   return cost;
@@ -129,6 +145,10 @@ void PairFollower::follow(double t, const Reading& reading, const Match& match) 
   followed_ = true;
   t_ = t;
   for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];
+  stranger_count_ = 0;
+  for (int b = 0; b < reading.blob_count; ++b)
+    if (b != match.blob[0] && b != match.blob[1])
+      strangers_[static_cast<std::size_t>(stranger_count_++)] = reading.blobs[static_cast<std::size_t>(b)];
 }
 
 }  // namespace verisim::wii

@@ -29,16 +29,21 @@ class PairFollower {
     [[nodiscard]] bool found() const { return pose.found; }
   };
   /// The pair nearest to the followed one while that is younger than 0.25 s; else, or when that one stands on its head,
-  /// the pair that looks most like a head: upright in L, equally large, further LEDs where they must be.
+  /// the pair that looks most like a head: upright in L, equally large, further LEDs where they must be, and none of
+  /// them a blob that stood beside the head before (a lamp).
   [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR) const;
   /// Follow these two from now on.
   void follow(double t, const Reading& reading, const Match& match);
-  void forget() { followed_ = false; }
+  void forget() {
+    followed_ = false;
+    stranger_count_ = 0;
+  }
 
  private:
   [[nodiscard]] Match solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const;
-  [[nodiscard]] Match continue_pair(const Reading& reading, const Matrix3d& C_LR) const;
+  [[nodiscard]] Match continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const;
   [[nodiscard]] Match acquire(const Reading& reading, const Matrix3d& C_LR) const;
+  [[nodiscard]] double distance_square_to_stranger(const Blob& blob) const;
   [[nodiscard]] double unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const;
 
   LedLayout leds_;
@@ -47,6 +52,8 @@ class PairFollower {
   bool followed_ = false;
   double t_ = 0;
   std::array<Blob, 2> last_;
+  std::array<Blob, kSlots> strangers_;  ///< what else was in the image then
+  int stranger_count_ = 0;
 };
 
 }  // namespace verisim::wii

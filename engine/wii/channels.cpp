@@ -5,9 +5,9 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kForceMin = 0.05;      // g
-constexpr double kForceMax = 8;         // g
-constexpr double kDistinctPixels = 2;   // two LEDs 0.15 m apart are this close only beyond 90 m
+constexpr double kForceMin = 0.05;     // g
+constexpr double kForceMax = 8;        // g
+constexpr double kDistinctPixels = 2;  // two LEDs 0.15 m apart are this close only beyond 90 m
 
 bool believable(const Blob& b) {
   // Written so that a NaN fails every comparison. Half a pixel of margin lets ideal, unrounded traces through.

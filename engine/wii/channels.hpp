@@ -15,7 +15,8 @@ namespace verisim::wii {
 
 inline constexpr int kChannels = 16;
 inline constexpr int kSlots = 4;
-inline constexpr int kChannelsMin = 15;  ///< the paper's "15 analog channels": slot 3 then lacks its size, and is unused
+inline constexpr int kChannelsMin =
+    15;  ///< the paper's "15 analog channels": slot 3 then lacks its size, and is unused
 using Channels = std::array<double, kChannels>;
 
 inline constexpr double kWidth = 1024;  ///< pixel
@@ -37,12 +38,17 @@ struct Reading {
 };
 
 /// Reads one report. Blobs that are not finite, outside the image, all zero or within 2 pixels of an earlier one are
-/// left out; so is an acceleration that is not finite or shorter than 0.05 g (free fall has no direction) or longer than
-/// 8 g (beyond any accelerometer of a Wii Remote). Returns false, and reads nothing, for fewer than kChannelsMin channels.
+/// left out; so is an acceleration that is not finite or shorter than 0.05 g (free fall has no direction) or longer
+/// than 8 g (beyond any accelerometer of a Wii Remote). Returns false, and reads nothing, for fewer than kChannelsMin
+/// channels.
 [[nodiscard]] bool read_channels(std::span<const double> channels, Reading& reading);
 
 /// The accelerometer's axes in R: (x, y, z)_R = (a_x, a_z, -a_y); and back.
-[[nodiscard]] inline Vector3d remote_from_accelerometer(const Vector3d& a) { return {a.x(), a.z(), -a.y()}; }
-[[nodiscard]] inline Vector3d accelerometer_from_remote(const Vector3d& f_R) { return {f_R.x(), -f_R.z(), f_R.y()}; }
+[[nodiscard]] inline Vector3d remote_from_accelerometer(const Vector3d& a) {
+  return {a.x(), a.z(), -a.y()};
+}
+[[nodiscard]] inline Vector3d accelerometer_from_remote(const Vector3d& f_R) {
+  return {f_R.x(), -f_R.z(), f_R.y()};
+}
 
 }  // namespace verisim::wii

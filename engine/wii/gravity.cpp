@@ -18,8 +18,8 @@ Matrix3d levelling(const Vector3d& up_R) {
   const double cos_r = upright ? up.y() / cos_p : 1;
   const double sin_r = upright ? up.x() / cos_p : 0;
   Matrix3d C;
-  C << cos_r, -sin_r, 0,                               //
-      cos_p * sin_r, cos_p * cos_r, sin_p,             // = up
+  C << cos_r, -sin_r, 0,                    //
+      cos_p * sin_r, cos_p * cos_r, sin_p,  // = up
       -sin_p * sin_r, -sin_p * cos_r, cos_p;
   return C;
 }

@@ -1,6 +1,6 @@
 // From the accelerometer to levelled coordinates L: +y opposed to gravity, +z the horizontal projection of the lens
-// axis, +x = y x z, origin at the pinhole (reference/wii/README.md). Heading is not observable; this choice keeps it the
-// remote's own.
+// axis, +x = y x z, origin at the pinhole (reference/wii/README.md). Heading is not observable; this choice keeps it
+// the remote's own.
 #pragma once
 
 #include "engine/base/pose.hpp"

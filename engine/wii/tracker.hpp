@@ -1,10 +1,11 @@
 // Head trackers: from the channels of a Wii Remote to the pose of the head, one interface for all.
 //
-// A tracker is fed by channels alone, recorded or simulated. It reports the pose X_LH of the head in levelled coordinates L
-// (gravity.hpp), whether that report may be used, and how sure it is. Rules that hold for every tracker except
-// vrpn-compatible, which does what VRPN does:
+// A tracker is fed by channels alone, recorded or simulated. It reports the pose X_LH of the head in levelled
+// coordinates L (gravity.hpp), whether that report may be used, and how sure it is. Rules that hold for every tracker
+// except vrpn-compatible, which does what VRPN does:
 //   - Nothing is valid before the first data; until then the pose is NaN.
-//   - A valid pose is 0.2 to 5 m away and has moved since the last valid one by at most 5 m/s, or `reacquired` says that
+//   - A valid pose is 0.2 to 5 m away and has moved since the last valid one by at most 5 m/s, or `reacquired` says
+//   that
 //     it stands elsewhere for a reason (first lock, after a loss, or confirmed by a second report).
 //   - A report that is not valid repeats the last estimate (scaat: its prediction).
 //   - Time that stands still or goes back by up to 1 s is no news; further back is a new recording, and starts anew.
@@ -47,12 +48,12 @@ struct LedLayout {
 struct TrackerSettings {
   LedLayout leds;
   FieldOfView fov;
-  double pixel_sigma = 0.4;           ///< pixel; rounding alone is 1/sqrt(12) = 0.29, with 0.3 px of noise 0.42
-  double gravity_sigma = 0.003;       ///< rad of tilt; rounding to 104 counts per g is 0.0028
-  double gravity_time_constant = 0.1; ///< s, smoothing of the accelerometer
-  double yaw_sigma = 9 * kDegree;     ///< how far heads turn: what two LEDs cannot see
-  double pitch_sigma = 5 * kDegree;   ///< how far heads nod
-  Pose X_R1R2;                        ///< stereo: the second remote in coordinates of the first
+  double pixel_sigma = 0.4;            ///< pixel; rounding alone is 1/sqrt(12) = 0.29, with 0.3 px of noise 0.42
+  double gravity_sigma = 0.003;        ///< rad of tilt; rounding to 104 counts per g is 0.0028
+  double gravity_time_constant = 0.1;  ///< s, smoothing of the accelerometer
+  double yaw_sigma = 9 * kDegree;      ///< how far heads turn: what two LEDs cannot see
+  double pitch_sigma = 5 * kDegree;    ///< how far heads nod
+  Pose X_R1R2;                         ///< stereo: the second remote in coordinates of the first
 };
 
 struct Report {

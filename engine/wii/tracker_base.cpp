@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/base/error.hpp"
+
 namespace verisim::wii {
 namespace {
 

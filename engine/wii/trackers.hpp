@@ -7,8 +7,8 @@
 
 namespace verisim::wii {
 
-/// Two LEDs, closed form, no memory but for which blob is which. Yaw and pitch are reported as 0 with the variance of what
-/// heads do.
+/// Two LEDs, closed form, no memory but for which blob is which. Yaw and pitch are reported as 0 with the variance of
+/// what heads do.
 [[nodiscard]] std::unique_ptr<Tracker> make_geometric(const TrackerSettings& settings);
 
 /// What VRPN's vrpn_Tracker_WiimoteHead computes, slips included (reference/wii/UPSTREAM.md).

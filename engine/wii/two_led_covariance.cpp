@@ -13,7 +13,7 @@ Matrix6d two_led_covariance(const TrackerSettings& settings, const Pinhole& pinh
   const double range_square = p_L.squaredNorm();
 
   const double bearing = (p_L.x() * cos_roll + p_L.y() * sin_roll) / std::max(p_L.z(), kDegree);
-  const double along = 2 * pixel_square * range_square / (spacing * spacing)            // relative variance of depth
+  const double along = 2 * pixel_square * range_square / (spacing * spacing)               // relative variance of depth
                        + bearing * bearing * yaw_square + 0.75 * yaw_square * yaw_square;  // E[psi^4] = 3 sigma^4
   const double across = range_square * pixel_square / 2 + range_square * tilt_square;
 

@@ -5,7 +5,8 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kForwardMin = 0.2;  // least z_L of a ray: steeper ones are nearly parallel to the plane they must cross
+constexpr double kForwardMin =
+    0.2;  // least z_L of a ray: steeper ones are nearly parallel to the plane they must cross
 
 }  // namespace
 

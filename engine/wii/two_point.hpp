@@ -1,8 +1,8 @@
 // The head pose from the images of two LEDs, in closed form and exact for a pinhole.
 //
-// Two points give four numbers; a pose has six. The two that cannot be known, yaw and pitch, are assumed zero: the head is
-// R_LH = Rz(roll), level in L but for its roll. Yaw then looks like distance (dissertation section 2.9); the covariance of
-// whoever uses this has to say so.
+// Two points give four numbers; a pose has six. The two that cannot be known, yaw and pitch, are assumed zero: the head
+// is R_LH = Rz(roll), level in L but for its roll. Yaw then looks like distance (dissertation section 2.9); the
+// covariance of whoever uses this has to say so.
 #pragma once
 
 #include "engine/base/pose.hpp"
@@ -24,8 +24,8 @@ struct TwoPointPose {
 };
 
 /// Solves Z0 q0 - Z1 q1 = Rz(roll) (p0_H - p1_H) with q = C_LR ray for both depths and the roll. Not found when the two
-/// rays are parallel, when the solution lies behind the lens, or when a ray rises so steeply (more than about 78 degrees)
-/// that "level" says nothing about depth. About 40 flops and two square roots.
+/// rays are parallel, when the solution lies behind the lens, or when a ray rises so steeply (more than about 78
+/// degrees) that "level" says nothing about depth. About 40 flops and two square roots.
 /// @pre rays have z = 1 (Pinhole::ray); the LEDs differ in x or y
 [[nodiscard]] TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R,
                                             const Matrix3d& C_LR);

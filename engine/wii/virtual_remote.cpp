@@ -40,7 +40,9 @@ void check(const RemoteSettings& s) {
     require(e.a >= 0 && e.a < kSlots && e.b >= 0 && e.b < kSlots, "slots of an exchange are 0 to 3");
 }
 
-double nearest_whole(double x) { return std::floor(x + 0.5); }
+double nearest_whole(double x) {
+  return std::floor(x + 0.5);
+}
 
 }  // namespace
 
@@ -67,7 +69,9 @@ double VirtualRemote::report_time(std::uint64_t k) const {
   return std::max(0.0, (static_cast<double>(k) + shift) / settings_.rate);
 }
 
-bool VirtualRemote::lost(std::uint64_t k) const { return settings_.loss > 0 && loss_.uniform(k) < settings_.loss; }
+bool VirtualRemote::lost(std::uint64_t k) const {
+  return settings_.loss > 0 && loss_.uniform(k) < settings_.loss;
+}
 
 bool VirtualRemote::hidden(const Situation& situation, const Vector3d& p_W) const {
   const Vector3d eye = situation.X_WR.position;
@@ -104,8 +108,7 @@ bool VirtualRemote::image(std::uint64_t k, int source, const Vector3d& p_R, doub
   const std::uint64_t counter = 32 * k + 2 * static_cast<std::uint64_t>(source);
   const auto sense_axis = [&](double ideal, std::uint64_t c) {
     double x = ideal;
-    if (settings_.subpixel_error > 0)
-      x += settings_.subpixel_error * pinned::sin(2 * pinned::kPi * ideal / kBasePixel);
+    if (settings_.subpixel_error > 0) x += settings_.subpixel_error * pinned::sin(2 * pinned::kPi * ideal / kBasePixel);
     if (settings_.pixel_noise > 0) x += settings_.pixel_noise * pixel_.normal(c);
     const double step = kBasePixel / settings_.subpixels;
     return settings_.whole_pixels ? step * nearest_whole(x / step) : x;

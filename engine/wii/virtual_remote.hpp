@@ -3,8 +3,8 @@
 // Every imperfection is a named parameter that is off by default (the default is the ideal device of
 // reference/wii/README.md: exact pinhole, whole pixels, exact accelerometer, 100 reports/s). Random numbers come from
 // counter-based streams named after the remote: a report depends on its number, never on what was drawn before, and one
-// imperfection can be switched without moving any other. The true pose rides along for whoever judges; trackers are given
-// the channels alone.
+// imperfection can be switched without moving any other. The true pose rides along for whoever judges; trackers are
+// given the channels alone.
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,9 @@ struct Situation {
 
 /// One infrared LED on the head.
 struct Led {
-  Vector3d p_H = Vector3d::Zero();   ///< m
-  Vector3d axis_H = {0, 0, -1};      ///< unit, where it shines: forward
-  double power = 1;                  ///< of a fresh one, 1 m away: blob size 4
+  Vector3d p_H = Vector3d::Zero();  ///< m
+  Vector3d axis_H = {0, 0, -1};     ///< unit, where it shines: forward
+  double power = 1;                 ///< of a fresh one, 1 m away: blob size 4
 };
 
 /// A ball that hides LEDs and lamps behind it; the wearer's own head is one.
@@ -71,17 +71,17 @@ struct RemoteSettings {
   std::vector<Led> leds = {Led{{0.075, 0, 0}}, Led{{-0.075, 0, 0}}};
 
   // Image                            off        on
-  bool whole_pixels = true;        // false      true: rounded to the sensor's 10 bits
-  int subpixels = 8;               // 8          1, 2 or 4: low sensitivity; positions are whole multiples of 8 / subpixels
-  double subpixel_error = 0;       // pixel; 0   0.2: amplitude of the error with the period of a base pixel (1/128 width)
-  double distortion_k1 = 0;        // 1; 0       -0.05: radial, factor 1 + k1 r^2 + k2 r^4 with r = tan(angle off the axis)
-  double distortion_k2 = 0;        // 1; 0       0.01
-  double pixel_noise = 0;          // pixel; 0   0.3: standard deviation, before rounding
+  bool whole_pixels = true;   // false      true: rounded to the sensor's 10 bits
+  int subpixels = 8;          // 8          1, 2 or 4: low sensitivity; positions are whole multiples of 8 / subpixels
+  double subpixel_error = 0;  // pixel; 0   0.2: amplitude of the error with the period of a base pixel (1/128 width)
+  double distortion_k1 = 0;   // 1; 0       -0.05: radial, factor 1 + k1 r^2 + k2 r^4 with r = tan(angle off the axis)
+  double distortion_k2 = 0;   // 1; 0       0.01
+  double pixel_noise = 0;     // pixel; 0   0.3: standard deviation, before rounding
 
   // Light
-  double battery = 1;              // 1          0.2: power of the LEDs relative to fresh cells
-  double half_power_angle = 0;     // rad; 0     20 deg: emission falls to half there, and to nothing behind
-  double intensity_min = 0;        // 1; 0       0.05: power / distance^2 that is still seen
+  double battery = 1;           // 1          0.2: power of the LEDs relative to fresh cells
+  double half_power_angle = 0;  // rad; 0     20 deg: emission falls to half there, and to nothing behind
+  double intensity_min = 0;     // 1; 0       0.05: power / distance^2 that is still seen
   std::vector<Ball> balls;
   std::vector<Lamp> lamps;
   std::vector<Outage> outages;
@@ -89,23 +89,23 @@ struct RemoteSettings {
   std::vector<SlotExchange> exchanges;
 
   // Accelerometer
-  int accelerometer_bits = 0;      // 0: exact   8: 26 counts per g, 10: 104 counts per g (ORACLES "Wii hardware")
-  Vector3d accelerometer_bias = Vector3d::Zero();  // g, accelerometer axes
-  double accelerometer_noise = 0;                  // g; 0   0.01: standard deviation per axis
+  int accelerometer_bits = 0;  // 0: exact   8: 26 counts per g, 10: 104 counts per g (ORACLES "Wii hardware")
+  Vector3d accelerometer_bias = Vector3d::Zero();                        // g, accelerometer axes
+  double accelerometer_noise = 0;                                        // g; 0   0.01: standard deviation per axis
   double accelerometer_limit = std::numeric_limits<double>::infinity();  // g; 3.6
 
   // Reports
-  double rate = 100;               // 1/s
-  double jitter = 0;               // 0          0.2: of a period, either way, uniform; below 0.5
-  double loss = 0;                 // 0          0.02: share of reports that never arrive
+  double rate = 100;  // 1/s
+  double jitter = 0;  // 0          0.2: of a period, either way, uniform; below 0.5
+  double loss = 0;    // 0          0.02: share of reports that never arrive
 };
 
 /// One report and, beside it, the truth.
 struct SensedReport {
-  double t = 0;             ///< s
-  Channels channels{};      ///< all that a tracker may see
-  Pose X_LH;                ///< true pose in levelled coordinates
-  unsigned led_in_view = 0; ///< bit i: the channels hold LED i
+  double t = 0;              ///< s
+  Channels channels{};       ///< all that a tracker may see
+  Pose X_LH;                 ///< true pose in levelled coordinates
+  unsigned led_in_view = 0;  ///< bit i: the channels hold LED i
 };
 
 /// The true levelled pose X_LH of a situation.
@@ -146,7 +146,7 @@ class VirtualRemote {
   RandomStream acceleration_;
   RandomStream jitter_;
   RandomStream loss_;
-  std::vector<Spot> spots_;                                       ///< of the current report
+  std::vector<Spot> spots_;                                                ///< of the current report
   std::array<int, kSlots> holder_ = {kNobody, kNobody, kNobody, kNobody};  ///< source in each slot
 };
 

@@ -1,6 +1,6 @@
 // vrpn_Tracker_WiimoteHead as it is (VRPN revision 893c749), rewritten from the description of what it computes
-// (reference/wii/UPSTREAM.md), so that its users can see what they have. Its slips are kept on purpose; ORACLES section 3,
-// slip 5 lists them.
+// (reference/wii/UPSTREAM.md), so that its users can see what they have. Its slips are kept on purpose; ORACLES section
+// 3, slip 5 lists them.
 #include <cmath>
 
 #include "engine/base/error.hpp"
@@ -10,9 +10,9 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kHeartbeat = 1.0 / 60;                        // s without data before the last pose is sent again
-constexpr double kRadPerPixel = 43 * kDegree / kWidth;         // slip: angles do not grow linearly with pixels
-constexpr double kThird = 0.33333;                             // slip: of three readings, whatever their age
+constexpr double kHeartbeat = 1.0 / 60;                 // s without data before the last pose is sent again
+constexpr double kRadPerPixel = 43 * kDegree / kWidth;  // slip: angles do not grow linearly with pixels
+constexpr double kThird = 0.33333;                      // slip: of three readings, whatever their age
 const double kHalfWidthTangent = pinned::tan(43 * kDegree / 2);
 const double kHalfHeightTangent = pinned::tan(32 * kDegree / 2);
 
@@ -116,8 +116,8 @@ class VrpnCompatible final : public Tracker {
     report_.pose.rotation = {pinned::cos(roll / 2), 0, 0, pinned::sin(roll / 2)};
     if (!level) report_.pose.rotation = report_.pose.rotation * levelling_;  // slip: about the head's axes
     // Upstream claims no accuracy. This is what its sensor would allow, for comparison with its errors.
-    report_.covariance = two_led_covariance(settings_, pinhole_, spacing_, report_.pose.position, pinned::cos(roll),
-                                            pinned::sin(roll));
+    report_.covariance =
+        two_led_covariance(settings_, pinhole_, spacing_, report_.pose.position, pinned::cos(roll), pinned::sin(roll));
   }
 
   TrackerSettings settings_;

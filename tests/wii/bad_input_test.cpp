@@ -1,4 +1,5 @@
-// Input that no healthy remote sends: survived, never valid, never news, by every tracker that follows tracker.hpp's rules.
+// Input that no healthy remote sends: survived, never valid, never news, by every tracker that follows tracker.hpp's
+// rules.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -176,7 +177,9 @@ TEST_P(BadInput, RandomReportsNeverMakeAWrongReport) {
     ASSERT_GT(report.covariance.diagonal().minCoeff(), 0) << k;
     ASSERT_GE(p.norm(), 0.2) << k;
     ASSERT_LE(p.norm(), 5) << k;
-    if (last_set && !report.reacquired) ASSERT_LE((p - last_p).norm(), 5 * (t - last_t)) << k;
+    if (last_set && !report.reacquired) {
+      ASSERT_LE((p - last_p).norm(), 5 * (t - last_t)) << k;
+    }
     last_p = p;
     last_t = t;
     last_set = true;

@@ -18,11 +18,14 @@ Situation tilted(double pitch, double roll, const Pose& X_LH) {
   return s;
 }
 
-// The closed form inverts the pinhole exactly: what is left is rounding (about 1e-16 times f L / z^2, conditioning 1e3).
+// The closed form inverts the pinhole exactly: what is left is rounding (about 1e-16 times f L / z^2, conditioning
+// 1e3).
 TEST(TwoPoints, InvertsTheIdealRemoteForAnyTiltAndAnyPairOfLeds) {
   const RandomStream random(1, "poses");
   for (std::uint64_t k = 0; k < 2000; ++k) {
-    const auto uniform = [&](std::uint64_t i, double lo, double hi) { return lo + (hi - lo) * random.uniform(16 * k + i); };
+    const auto uniform = [&](std::uint64_t i, double lo, double hi) {
+      return lo + (hi - lo) * random.uniform(16 * k + i);
+    };
     TrackerSettings settings;
     settings.leds.p_H[0] = {0.08, uniform(0, -0.05, 0.05), uniform(1, -0.05, 0.05)};
     settings.leds.p_H[1] = {-0.06, uniform(2, -0.05, 0.05), uniform(3, -0.05, 0.05)};
@@ -33,8 +36,7 @@ TEST(TwoPoints, InvertsTheIdealRemoteForAnyTiltAndAnyPairOfLeds) {
     const Vector3d up_or_down = rotation_from_vector({-pitch, 0, 0}) * Vector3d(0, 0, uniform(5, 0.6, 3));
     const double roll = uniform(6, -1.2, 1.2);
     const Pose X_LH{up_or_down, rotation_from_vector({0, 0, roll})};
-    const SensedReport report =
-        VirtualRemote(remote, 1, "r").sense(0, tilted(pitch, uniform(7, -3, 3), X_LH));
+    const SensedReport report = VirtualRemote(remote, 1, "r").sense(0, tilted(pitch, uniform(7, -3, 3), X_LH));
     if (report.led_in_view != 3) continue;
     const std::unique_ptr<Tracker> tracker = make_tracker("geometric", settings);
     const Report& found = tracker->update(0, report.channels);
@@ -58,7 +60,8 @@ Errors track(const Path& path, int count, const RemoteSettings& settings = {}) {
   const std::unique_ptr<Tracker> tracker = make_tracker("geometric", {});
   Errors e;
   for (int k = 0; k < count; ++k) {
-    const SensedReport report = remote.sense(static_cast<std::uint64_t>(k), path(remote.report_time(static_cast<std::uint64_t>(k))));
+    const SensedReport report =
+        remote.sense(static_cast<std::uint64_t>(k), path(remote.report_time(static_cast<std::uint64_t>(k))));
     const Report& found = tracker->update(report.t, report.channels);
     ++e.total;
     if (!found.valid) continue;
@@ -80,7 +83,11 @@ TEST(Geometric, IsWithinHalfACentimetreAtRest) {
 }
 
 TEST(Geometric, SweepsDepthWithinItsTarget) {
-  const Errors e = track([](double t) { return tilted(0, 0, {{0, 0, 1.2 - 0.8 * std::cos(0.2 * pinned::kPi * t)}, Quaterniond::Identity()}); }, 1000);
+  const Errors e = track(
+      [](double t) {
+        return tilted(0, 0, {{0, 0, 1.2 - 0.8 * std::cos(0.2 * pinned::kPi * t)}, Quaterniond::Identity()});
+      },
+      1000);
   EXPECT_LE(e.position, 0.0065);
   EXPECT_GE(e.valid, 995);
 }
@@ -88,11 +95,13 @@ TEST(Geometric, SweepsDepthWithinItsTarget) {
 // Upstream: 36.7 cm and 10.3 degrees.
 TEST(Geometric, LevelsPositionAndOrientationOfATiltedRemote) {
   const double p = 20 * kDegree;
-  const Errors e = track([&](double t) {
-    const Vector3d p_R{0.1 * std::sin(t), 0.02 * std::cos(1.3 * t), 1};
-    const Vector3d p_L = rotation_from_vector({-p, 0, 0}) * p_R;
-    return tilted(p, 10 * kDegree, {p_L, Quaterniond::Identity()});
-  }, 1000);
+  const Errors e = track(
+      [&](double t) {
+        const Vector3d p_R{0.1 * std::sin(t), 0.02 * std::cos(1.3 * t), 1};
+        const Vector3d p_L = rotation_from_vector({-p, 0, 0}) * p_R;
+        return tilted(p, 10 * kDegree, {p_L, Quaterniond::Identity()});
+      },
+      1000);
   EXPECT_LE(e.position, 0.0025);
   EXPECT_LE(e.roll, 0.2 * kDegree);
 }
@@ -126,7 +135,8 @@ TEST(Geometric, IgnoresALampAndDiesWithAnLed) {
 TEST(Geometric, SaysThatItKnowsNoYaw) {
   const std::unique_ptr<Tracker> tracker = make_tracker("geometric", {});
   VirtualRemote remote({}, 1, "remote");
-  const Report& report = tracker->update(0, remote.sense(0, tilted(0, 0, {{0.2, 0, 1}, Quaterniond::Identity()})).channels);
+  const Report& report =
+      tracker->update(0, remote.sense(0, tilted(0, 0, {{0.2, 0, 1}, Quaterniond::Identity()})).channels);
   EXPECT_GE(report.covariance(4, 4), std::pow(9 * kDegree, 2));
   // At 0.2 m beside the axis a turn of 9 degrees looks like 3 cm of depth.
   EXPECT_GE(std::sqrt(report.covariance(2, 2)), 0.2 * 9 * kDegree);

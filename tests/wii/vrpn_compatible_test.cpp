@@ -1,4 +1,5 @@
 // The tracker that does what VRPN's does, against what VRPN's did (reference/wii: recordings and UPSTREAM.md).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +10,9 @@
 namespace verisim::wii {
 namespace {
 
-std::string printed(double value) { return fmt::format("{:.10g}", value == 0 ? 0 : value); }
+std::string printed(double value) {
+  return fmt::format("{:.10g}", value == 0 ? 0 : value);
+}
 
 class Recording : public testing::TestWithParam<const char*> {};
 
