@@ -28,6 +28,8 @@ function(verisim_core_variants name)
       add_executable(${variant} ${sources})
       target_link_libraries(${variant} PRIVATE ${ARG_CORE})
       target_compile_options(${variant} PRIVATE -O${level} -g0)
+      target_precompile_headers(${variant} PRIVATE <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <functional> <map>
+                                <memory> <string> <vector>)  # reading these is most of the time
       set_target_properties(${variant} PROPERTIES
         CXX_COMPILER_LAUNCHER "${PROJECT_SOURCE_DIR}/cmake/compile_with.sh;${compiler}"
         EXPORT_COMPILE_COMMANDS OFF  # the default build's are the ones to lint
