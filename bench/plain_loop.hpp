@@ -1,5 +1,5 @@
-// The unit of comparison: a plain scalar voxmap loop, as anyone would write it for one pair of bodies. Double, one dense
-// table of layers, one look-up a point; it accumulates the force and the torque and keeps no list, no culling.
+// The unit of comparison: a plain scalar voxmap loop, as anyone would write it for one pair of bodies. Double, one
+// dense table of layers, one look-up a point; it accumulates the force and the torque and keeps no list, no culling.
 #pragma once
 
 #include <cmath>

@@ -49,7 +49,9 @@ HWY_INLINE V load(const std::vector<float>& column, std::size_t i) {
   return hn::PromoteTo(kD, hn::LoadU(kF, column.data() + i));
 }
 
-HWY_INLINE Triple broadcast(const Vector3d& v) { return {hn::Set(kD, v.x()), hn::Set(kD, v.y()), hn::Set(kD, v.z())}; }
+HWY_INLINE Triple broadcast(const Vector3d& v) {
+  return {hn::Set(kD, v.x()), hn::Set(kD, v.y()), hn::Set(kD, v.z())};
+}
 
 HWY_INLINE Triple arm(const ContactList& c, std::size_t i, const Triple& about) {
   return {hn::Sub(load(c.x, i), about.x), hn::Sub(load(c.y, i), about.y), hn::Sub(load(c.z, i), about.z)};
@@ -139,7 +141,9 @@ HWY_EXPORT(penalty_columns);
 HWY_EXPORT(sum_strands);
 
 /// The strands' sum, always in this order.
-double tree(const Strands& s) { return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])); }
+double tree(const Strands& s) {
+  return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+}
 
 }  // namespace
 
@@ -154,7 +158,8 @@ Matrix6d contact_matrix(const ContactList& contacts, const Vector3d& about) {
   return W;
 }
 
-void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness, double damping) {
+void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness,
+                   double damping) {
   VERISIM_ASSERT(stiffness >= 0);
   VERISIM_ASSERT(damping >= 0);
   HWY_DYNAMIC_DISPATCH(penalty_columns)(contacts, {about, velocity, stiffness, damping});

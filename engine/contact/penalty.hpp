@@ -12,18 +12,19 @@
 
 namespace verisim {
 
-/// W = sum over contacts of J J^T about the point `about` (body coordinates of A relative to its grid origin), where the
-/// contacts' own coordinates live. Eight fixed strands, then a fixed tree: same bits for every SIMD target.
+/// W = sum over contacts of J J^T about the point `about` (body coordinates of A relative to its grid origin), where
+/// the contacts' own coordinates live. Eight fixed strands, then a fixed tree: same bits for every SIMD target.
 [[nodiscard]] Matrix6d contact_matrix(const ContactList& contacts, const Vector3d& about);
 
 /// Forces f_i = max(0, k depth_i - b v_i) n_i with v_i the velocity of B's point against A along n_i (positive when
 /// leaving). `velocity` is B's relative to A: linear at `about`, angular; body coordinates of A.
-void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness, double damping);
+void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness,
+                   double damping);
 
 /// Sum of the forces and of their torques about `about`, and the deepest depth. Fixed order as above.
 struct ContactSum {
-  Wrench wrench;           ///< on B, body coordinates of A
-  double depth_max = 0;    ///< m
+  Wrench wrench;         ///< on B, body coordinates of A
+  double depth_max = 0;  ///< m
 };
 [[nodiscard]] ContactSum sum(const ContactList& contacts, const Vector3d& about);
 

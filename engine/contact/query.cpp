@@ -11,12 +11,12 @@
 namespace verisim {
 namespace {
 
-/// Voxel steps (Chebyshev) from `cell`, which may lie outside the grid, to the nearest surface voxel: a lower bound if the
-/// cell is outside A, else 0.
+/// Voxel steps (Chebyshev) from `cell`, which may lie outside the grid, to the nearest surface voxel: a lower bound if
+/// the cell is outside A, else 0.
 ///
-/// In a brick with or next to one with surface voxels the layer itself is that number (at kBand + 1, a lower bound of it).
-/// If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And outside the grid by e cells, its
-/// border of one brick without surface adds 8.
+/// In a brick with or next to one with surface voxels the layer itself is that number (at kBand + 1, a lower bound of
+/// it). If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And outside the grid by e cells,
+/// its border of one brick without surface adds 8.
 std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
   std::int32_t clamped[3];
   std::int32_t excess = 0;
@@ -32,15 +32,15 @@ std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
 
 /// True only if every point of the cluster certainly has a layer > 0.
 ///
-/// All points lie within `radius` of the centre, so their cells are at most `reach` = ceil(radius / voxel size) voxel steps
-/// from the centre's. Surface voxels are all that a triangle touches, so two neighbouring cells (by face, edge or corner) of
-/// which neither is one lie on the same side. If the centre's cell is outside and the nearest surface voxel more than
-/// `reach` steps away, no step on the way to any point's cell meets one: all are outside, layer > 0. A cluster deep inside
-/// is not culled: steps_to_surface is 0 there.
+/// All points lie within `radius` of the centre, so their cells are at most `reach` = ceil(radius / voxel size) voxel
+/// steps from the centre's. Surface voxels are all that a triangle touches, so two neighbouring cells (by face, edge or
+/// corner) of which neither is one lie on the same side. If the centre's cell is outside and the nearest surface voxel
+/// more than `reach` steps away, no step on the way to any point's cell meets one: all are outside, layer > 0. A
+/// cluster deep inside is not culled: steps_to_surface is 0 there.
 bool surely_outside(const QueryFrame& f, const ClusterFrame& c, float radius, double per_metre) {
   constexpr double kRounding = 0x1p-10;  // voxel; of local coordinates (float) and of the radius; far above both
   const double reach = radius * per_metre * (1 + kRounding) + kRounding;
-  VERISIM_ASSERT(reach < 1 << 20);  // local coordinates stay within the range of kIntegerMagic
+  VERISIM_ASSERT(reach < 1 << 20);                  // local coordinates stay within the range of kIntegerMagic
   return steps_to_surface(f, c.base) - 1 >= reach;  // more steps than ceil(reach), as both sides of it are whole
 }
 

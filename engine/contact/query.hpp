@@ -1,15 +1,16 @@
 // Pointshell of body B against the voxmap of body A: the innermost loop.
 //
 // Source: Voxmap PointShell (McNeely et al. 1999), tangent-plane force; dissertation section 8.2.2 (a list of collision
-// pairs is returned, separately from summing them). Coordinates: everything in the list is in the body coordinates of A.
+// pairs is returned, separately from summing them). Coordinates: everything in the list is in the body coordinates of
+// A.
 //
 // A point p with inward normal n (B's, rotated into A) in a voxel of layer L <= 0 with centre c has the depth
 //     d = (c - p).n + |L| s          (s: voxel size; the tangent plane through the centre, moved out by whole layers)
 // and is in contact if d > 0. The force that separates acts on B along n.
 //
-// Arithmetic: each cluster's centre is placed in A's grid in double and split into a cell and a fraction; its points are
-// added to that in float, as offsets of a few voxels. So a coordinate is good to about 1e-6 of a voxel however large the
-// parts are. query_arithmetic.hpp is the one definition; SIMD repeats it operation by operation.
+// Arithmetic: each cluster's centre is placed in A's grid in double and split into a cell and a fraction; its points
+// are added to that in float, as offsets of a few voxels. So a coordinate is good to about 1e-6 of a voxel however
+// large the parts are. query_arithmetic.hpp is the one definition; SIMD repeats it operation by operation.
 //
 // SIMD by run-time dispatch (Google Highway). Every target gives the same bits: no fused multiply-add, elementwise
 // operations only, lists in point order, sums in eight fixed strands.
@@ -25,15 +26,15 @@
 namespace verisim {
 
 /// The contacts of one pair of bodies in one frame, as columns. Capacity is fixed when it is made; nothing grows later.
-/// Only the first `size` rows mean anything: columns are kPadding longer than the capacity, so that whole vectors may be
-/// stored at the end.
-struct ContactList {                   //  unit  meaning
-  std::vector<std::uint32_t> point;    //  -     pointshell point of B
-  std::vector<std::uint32_t> slot;     //  -     where A's voxel is stored: block * 512 + cell
-  std::vector<float> x, y, z;          //  m     the point, body coordinates of A, relative to A's grid origin
-  std::vector<float> nx, ny, nz;       //  1     unit normal that pushes B
-  std::vector<float> depth;            //  m     > 0
-  std::vector<float> fx, fy, fz;       //  N     force on B, body coordinates of A (see penalty.hpp)
+/// Only the first `size` rows mean anything: columns are kPadding longer than the capacity, so that whole vectors may
+/// be stored at the end.
+struct ContactList {                 //  unit  meaning
+  std::vector<std::uint32_t> point;  //  -     pointshell point of B
+  std::vector<std::uint32_t> slot;   //  -     where A's voxel is stored: block * 512 + cell
+  std::vector<float> x, y, z;        //  m     the point, body coordinates of A, relative to A's grid origin
+  std::vector<float> nx, ny, nz;     //  1     unit normal that pushes B
+  std::vector<float> depth;          //  m     > 0
+  std::vector<float> fx, fy, fz;     //  N     force on B, body coordinates of A (see penalty.hpp)
   std::uint32_t size = 0;
   static constexpr std::size_t kPadding = 16;
   explicit ContactList(std::size_t capacity = 0);
@@ -42,9 +43,9 @@ struct ContactList {                   //  unit  meaning
 
 /// Deterministic work counts of a query: the same on every machine, for any SIMD target and number of threads.
 struct QueryCost {
-  std::uint64_t clusters = 0;       ///< clusters looked at
-  std::uint64_t points = 0;         ///< points transformed and looked up
-  std::uint64_t candidates = 0;     ///< points found in a voxel of layer <= 0
+  std::uint64_t clusters = 0;    ///< clusters looked at
+  std::uint64_t points = 0;      ///< points transformed and looked up
+  std::uint64_t candidates = 0;  ///< points found in a voxel of layer <= 0
 };
 
 /// Fills `contacts` (in ascending point order) and adds to `cost`. X_AB places B in A. No allocation, no lock.
@@ -52,8 +53,8 @@ struct QueryCost {
 /// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
 
-/// The same, written plainly (a loop over all points, nothing culled, no SIMD): what the fast one must equal bit for bit.
-/// Costs differ: it counts every point.
+/// The same, written plainly (a loop over all points, nothing culled, no SIMD): what the fast one must equal bit for
+/// bit. Costs differ: it counts every point.
 void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
 
 /// Names of the SIMD targets compiled in and supported by this CPU, best first ("AVX3", "AVX2", "SSE4", "SSSE3" …);

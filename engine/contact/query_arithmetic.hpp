@@ -1,5 +1,5 @@
-// The arithmetic of a query, defined once: where a cluster and a point lie in A's grid, which voxel that is and how deep.
-// Private to this folder. Scalar; query_simd.cpp repeats `locate` and `depth_of` lane by lane in the same order.
+// The arithmetic of a query, defined once: where a cluster and a point lie in A's grid, which voxel that is and how
+// deep. Private to this folder. Scalar; query_simd.cpp repeats `locate` and `depth_of` lane by lane in the same order.
 //
 // All coordinates are A's grid coordinates (voxels), split as base + local: `base` is the cell of the cluster's centre
 // (integer), `local` the rest (float, a few voxels), so nothing is lost to the size of a part.
@@ -15,13 +15,13 @@ namespace verisim {
 
 /// What stays the same for all points of one query. Matrices are row-major.
 struct QueryFrame {
-  float voxels[9];               ///< rotation B to A divided by the voxel size [voxel/m]
-  float rotation[9];             ///< rotation B to A
-  double centers[9];             ///< as `voxels`, for cluster centres
-  double origin[3];              ///< the pointshell's reference [voxel]
-  float voxel_size;              ///< m
-  std::int32_t cell_max[3];      ///< last cell along each axis
-  std::int32_t row, slice;       ///< bricks along x; bricks in an xy slice
+  float voxels[9];           ///< rotation B to A divided by the voxel size [voxel/m]
+  float rotation[9];         ///< rotation B to A
+  double centers[9];         ///< as `voxels`, for cluster centres
+  double origin[3];          ///< the pointshell's reference [voxel]
+  float voxel_size;          ///< m
+  std::int32_t cell_max[3];  ///< last cell along each axis
+  std::int32_t row, slice;   ///< bricks along x; bricks in an xy slice
   const std::uint32_t* brick_block;
   const Layer* brick_clearance;
   const Layer* layers;
@@ -29,10 +29,10 @@ struct QueryFrame {
 
 /// A cluster that is not culled: its centre, in B and in A's grid.
 struct ClusterFrame {
-  float center[3];               ///< m, relative to the pointshell's reference
-  std::int32_t base[3];          ///< cell of the centre
-  float fraction[3];             ///< centre within that cell, in [0, 1]
-  std::uint32_t begin, end;      ///< its points
+  float center[3];           ///< m, relative to the pointshell's reference
+  std::int32_t base[3];      ///< cell of the centre
+  float fraction[3];         ///< centre within that cell, in [0, 1]
+  std::uint32_t begin, end;  ///< its points
 };
 
 /// Adding it to an integer |i| < 2^22 leaves i in the low bits of the float: a conversion that is one addition.
@@ -41,8 +41,8 @@ inline constexpr std::int32_t kIntegerMagicBits = 0x4B400000;
 
 /// A point in A's grid.
 struct PointLocation {
-  float local[3];                ///< relative to the cluster's base cell
-  std::uint32_t slot;            ///< block * 512 + cell in brick, of the cell clamped to the grid
+  float local[3];      ///< relative to the cluster's base cell
+  std::uint32_t slot;  ///< block * 512 + cell in brick, of the cell clamped to the grid
   Layer layer;
 };
 
@@ -88,13 +88,16 @@ inline void place(const QueryFrame& f, const Pointshell::Cluster& cluster, Clust
     c.center[i] = cluster.center[i];
     c.base[i] = floor_limited(g);
     const double fraction = g - c.base[i];
-    c.fraction[i] = fraction >= 0 && fraction <= 1 ? static_cast<float>(fraction) : 0.0F;  // beyond the limits: anything
+    c.fraction[i] =
+        fraction >= 0 && fraction <= 1 ? static_cast<float>(fraction) : 0.0F;  // beyond the limits: anything
   }
   c.begin = cluster.begin;
   c.end = cluster.end;
 }
 
-inline std::int32_t clamp_cell(std::int32_t cell, std::int32_t last) { return cell < 0 ? 0 : cell > last ? last : cell; }
+inline std::int32_t clamp_cell(std::int32_t cell, std::int32_t last) {
+  return cell < 0 ? 0 : cell > last ? last : cell;
+}
 
 inline std::int32_t brick_of(const QueryFrame& f, const std::int32_t cell[3]) {
   return (cell[0] >> kBrickShift) + (cell[1] >> kBrickShift) * f.row + (cell[2] >> kBrickShift) * f.slice;

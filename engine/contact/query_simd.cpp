@@ -1,6 +1,6 @@
 // Two passes over a cluster: all its points for their layer, then the few in a voxel of layer <= 0 for their depth.
-// Every lane does what query_arithmetic.hpp does for one point, in the same order; Mul and Add stay apart because MulAdd
-// fuses on some targets only.
+// Every lane does what query_arithmetic.hpp does for one point, in the same order; Mul and Add stay apart because
+// MulAdd fuses on some targets only.
 //
 // Compaction stores whole vectors whose first lanes count, so every array here has room for one more vector at its end.
 // AVX-512's compress is used in its register form: the one that writes memory is microcode on Zen 4, a hundred cycles.
@@ -88,14 +88,14 @@ HWY_INLINE I slots_of(const QueryFrame& f, I x, I y, I z) {
   const I slice = hn::Mul(hn::ShiftRight<kBrickShift>(z), hn::Set(kI, f.slice));
   const I brick = hn::Add(hn::Add(hn::ShiftRight<kBrickShift>(x), row), slice);
   const I seven = hn::Set(kI, kBrickSide - 1);
-  const I in_brick = hn::Or(hn::Or(hn::And(x, seven), hn::ShiftLeft<3>(hn::And(y, seven))),
-                            hn::ShiftLeft<6>(hn::And(z, seven)));
+  const I in_brick =
+      hn::Or(hn::Or(hn::And(x, seven), hn::ShiftLeft<3>(hn::And(y, seven))), hn::ShiftLeft<6>(hn::And(z, seven)));
   const I block = hn::GatherIndex(kI, reinterpret_cast<const std::int32_t*>(f.brick_block), brick);
   return hn::Or(hn::ShiftLeft<9>(block), in_brick);
 }
 
-/// The layers at the slots, each in the highest byte of its lane. Gathers whole aligned words (blocks have 512 bytes, so
-/// none reaches beyond the table) and shifts the byte up.
+/// The layers at the slots, each in the highest byte of its lane. Gathers whole aligned words (blocks have 512 bytes,
+/// so none reaches beyond the table) and shifts the byte up.
 HWY_INLINE I layers_on_top(const QueryFrame& f, I slots) {
   using Unsigned = hn::RebindToUnsigned<Ints>;
   const Unsigned u;
@@ -148,7 +148,8 @@ struct Candidates {
   std::size_t size;
 };
 
-HWY_INLINE void find_candidates(const QueryFrame& f, const Pointshell& shell, const ClusterFrame& c, Candidates& found) {
+HWY_INLINE void find_candidates(const QueryFrame& f, const Pointshell& shell, const ClusterFrame& c,
+                                Candidates& found) {
   found.size = 0;
   const I first_above_zero = hn::Set(kI, 1 << 24);
   for (std::size_t i = c.begin; i < c.end; i += kLanes) {
@@ -158,8 +159,9 @@ HWY_INLINE void find_candidates(const QueryFrame& f, const Pointshell& shell, co
     const Triple turned = rotate(f.voxels, d);
     const Triple local = {hn::Add(turned.x, hn::Set(kF, c.fraction[0])), hn::Add(turned.y, hn::Set(kF, c.fraction[1])),
                           hn::Add(turned.z, hn::Set(kF, c.fraction[2]))};
-    const I slots = slots_of(f, cell_along(local.x, c.base[0], f.cell_max[0]),
-                             cell_along(local.y, c.base[1], f.cell_max[1]), cell_along(local.z, c.base[2], f.cell_max[2]));
+    const I slots =
+        slots_of(f, cell_along(local.x, c.base[0], f.cell_max[0]), cell_along(local.y, c.base[1], f.cell_max[1]),
+                 cell_along(local.z, c.base[2], f.cell_max[2]));
     const I layers = layers_on_top(f, slots);
     const auto within = hn::And(hn::Lt(layers, first_above_zero), hn::FirstN(kI, c.end - i));
     if (hn::AllFalse(kI, within)) continue;
@@ -181,9 +183,11 @@ HWY_INLINE void append_touching(const QueryFrame& f, const Pointshell& shell, co
   const F voxel_size = hn::Set(kF, f.voxel_size);
   for (std::size_t i = 0; i < found.size; i += kLanes) {
     const auto real = hn::FirstN(kI, found.size - i);
-    const I points = hn::IfThenElseZero(real, hn::Load(kI, found.point + i));  // point 0 stands in for lanes of no candidate
-    const Triple n = rotate(f.rotation, {hn::GatherIndex(kF, shell.nx.data(), points), hn::GatherIndex(kF, shell.ny.data(), points),
-                                         hn::GatherIndex(kF, shell.nz.data(), points)});
+    const I points =
+        hn::IfThenElseZero(real, hn::Load(kI, found.point + i));  // point 0 stands in for lanes of no candidate
+    const Triple n =
+        rotate(f.rotation, {hn::GatherIndex(kF, shell.nx.data(), points), hn::GatherIndex(kF, shell.ny.data(), points),
+                            hn::GatherIndex(kF, shell.nz.data(), points)});
     const Triple local = {hn::LoadU(kF, found.x + i), hn::LoadU(kF, found.y + i), hn::LoadU(kF, found.z + i)};
     const F along = hn::Add(hn::Add(hn::Mul(hn::Sub(half, hn::Sub(local.x, hn::Floor(local.x))), n.x),
                                     hn::Mul(hn::Sub(half, hn::Sub(local.y, hn::Floor(local.y))), n.y)),

@@ -12,7 +12,9 @@ namespace {
 /// What Highway compiles when it uses no SIMD; which of its two portable targets that is depends on the compiler.
 constexpr std::int64_t kPortable = HWY_BASELINE_SCALAR;
 
-std::string name_of(std::int64_t target) { return target == kPortable ? "scalar" : hwy::TargetName(target); }
+std::string name_of(std::int64_t target) {
+  return target == kPortable ? "scalar" : hwy::TargetName(target);
+}
 
 std::vector<std::int64_t> targets() {
   std::int64_t supported = (hwy::SupportedTargets() & HWY_TARGETS) | kPortable;

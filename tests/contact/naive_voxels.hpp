@@ -65,7 +65,8 @@ struct Dense {
   Eigen::Vector3i cells;
   std::vector<Layer> layers;
   [[nodiscard]] std::size_t at(int x, int y, int z) const {
-    return static_cast<std::size_t>(x) + static_cast<std::size_t>(cells.x()) * (y + static_cast<std::size_t>(cells.y()) * z);
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(cells.x()) * (y + static_cast<std::size_t>(cells.y()) * z);
   }
 };
 
@@ -181,7 +182,8 @@ inline VoxelBody voxelize(const Shape& shape, double voxel_size) {
   map.first_surface.resize(2);
   std::vector<bool> has_surface;
   for (int i = 0; i < map.bricks.prod(); ++i) {
-    const Eigen::Vector3i brick(i % map.bricks.x(), i / map.bricks.x() % map.bricks.y(), i / map.bricks.x() / map.bricks.y());
+    const Eigen::Vector3i brick(i % map.bricks.x(), i / map.bricks.x() % map.bricks.y(),
+                                i / map.bricks.x() / map.bricks.y());
     has_surface.push_back(add_brick(shape, grid, brick, body));
   }
   map.surface_count = static_cast<std::uint32_t>(shell.size());

@@ -36,9 +36,15 @@ ContactList random_contacts(std::uint64_t seed, std::uint32_t count) {
   return list;
 }
 
-Vector3d point(const ContactList& c, std::uint32_t i) { return Vector3f(c.x[i], c.y[i], c.z[i]).cast<double>(); }
-Vector3d normal(const ContactList& c, std::uint32_t i) { return Vector3f(c.nx[i], c.ny[i], c.nz[i]).cast<double>(); }
-Vector3d force(const ContactList& c, std::uint32_t i) { return Vector3f(c.fx[i], c.fy[i], c.fz[i]).cast<double>(); }
+Vector3d point(const ContactList& c, std::uint32_t i) {
+  return Vector3f(c.x[i], c.y[i], c.z[i]).cast<double>();
+}
+Vector3d normal(const ContactList& c, std::uint32_t i) {
+  return Vector3f(c.nx[i], c.ny[i], c.nz[i]).cast<double>();
+}
+Vector3d force(const ContactList& c, std::uint32_t i) {
+  return Vector3f(c.fx[i], c.fy[i], c.fz[i]).cast<double>();
+}
 
 const Vector3d kAbout(0.01, -0.02, 0.03);
 const Twist kMoving = {{0.03, -0.02, 0.01}, {0.5, -0.4, 0.3}};
@@ -149,8 +155,8 @@ double growth(const Matrix6d& W, const Vector6d& mass, double k, double b, doubl
   return largest;
 }
 
-// The rule in penalty.hpp: at the bound of the Frobenius norm nothing grows. That norm exceeds the largest eigenvalue of
-// a 6 x 6 matrix by at most sqrt(6), so at three times the bound the model is beyond the exact limit, and grows.
+// The rule in penalty.hpp: at the bound of the Frobenius norm nothing grows. That norm exceeds the largest eigenvalue
+// of a 6 x 6 matrix by at most sqrt(6), so at three times the bound the model is beyond the exact limit, and grows.
 TEST(StabilityRule, HoldsAtTheBoundAndFailsAtThreeTimesIt) {
   constexpr double dt = 0.001;
   Vector6d mass;
@@ -161,8 +167,8 @@ TEST(StabilityRule, HoldsAtTheBoundAndFailsAtThreeTimesIt) {
     const ContactList list = random_contacts(seed, 5 + 20 * static_cast<std::uint32_t>(seed));
     const Matrix6d W = contact_matrix(list, kAbout);
     const double norm = (inverse_root.asDiagonal() * W * inverse_root.asDiagonal()).norm();
-    const double limit = 4 / norm;                     // of k dt^2 + 2 b dt
-    for (const double damped : {0.0, 0.3, 0.9}) {      // share of the limit that damping takes
+    const double limit = 4 / norm;                 // of k dt^2 + 2 b dt
+    for (const double damped : {0.0, 0.3, 0.9}) {  // share of the limit that damping takes
       const double k = (1 - damped) * limit / (dt * dt);
       const double b = damped * limit / (2 * dt);
       // A single undamped oscillator just below the limit swings to 1 / sqrt(1 - (1 - 2 margin)^2) of its start.

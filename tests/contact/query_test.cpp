@@ -42,12 +42,18 @@ Pose random_pose(std::uint64_t seed) {
   const Vector3d turn = random_vector(r, 3);
   const Quaterniond any = rotation_from_vector(4 * turn);
   switch (seed % 6) {
-    case 0: return {{0.008 * v.x(), 0.008 * v.y(), 0.12 * v.z()}, rotation_from_vector(0.1 * turn)};
-    case 1: return {{0.12 * v.x(), 0.12 * v.y(), 0.12 * v.z()}, any};
-    case 2: return {{0.05 + 0.01 * v.x(), 0.01 * v.y(), 0.15 + kVoxel * v.z()}, Quaterniond::Identity()};
-    case 3: return {{0.06, 0.055 + 0.01 * v.y(), 0.01 * v.z()}, any};
-    case 4: return {{0.2 * v.x(), 0.16 + 0.05 * v.y(), 0.15 * v.z()}, any};
-    default: return {1000 * v, any};
+    case 0:
+      return {{0.008 * v.x(), 0.008 * v.y(), 0.12 * v.z()}, rotation_from_vector(0.1 * turn)};
+    case 1:
+      return {{0.12 * v.x(), 0.12 * v.y(), 0.12 * v.z()}, any};
+    case 2:
+      return {{0.05 + 0.01 * v.x(), 0.01 * v.y(), 0.15 + kVoxel * v.z()}, Quaterniond::Identity()};
+    case 3:
+      return {{0.06, 0.055 + 0.01 * v.y(), 0.01 * v.z()}, any};
+    case 4:
+      return {{0.2 * v.x(), 0.16 + 0.05 * v.y(), 0.15 * v.z()}, any};
+    default:
+      return {1000 * v, any};
   }
 }
 
@@ -116,7 +122,8 @@ TEST(ContactQuery, FindsWhatTheDefinitionSaysInDoublePrecision) {
     for (std::uint32_t i = 0; i < pin.shell.size(); ++i) {
       const bool found = k < list.size && list.point[k] == i;
       const std::uint32_t row = found ? k++ : 0;
-      const Vector3d p_A = X_AB * (pin.shell.reference + Vector3f(pin.shell.x[i], pin.shell.y[i], pin.shell.z[i]).cast<double>());
+      const Vector3d p_A =
+          X_AB * (pin.shell.reference + Vector3f(pin.shell.x[i], pin.shell.y[i], pin.shell.z[i]).cast<double>());
       const Vector3d g = (p_A - block.voxmap.origin) / kVoxel;
       const Vector3d cell = g.array().floor();
       const Vector3d rest = g - cell;
@@ -141,7 +148,8 @@ TEST(ContactQuery, FindsWhatTheDefinitionSaysInDoublePrecision) {
 
 // A plane of points at a known height over a box: the depth is the tangent plane's, by hand.
 TEST(ContactQuery, GivesTheWorkedDepth) {
-  const VoxelBody ground = naive::voxelize(naive::box({0.04, 0.04, 0.04}), 0.01);  // faces in voxel walls: layers 0 at both
+  const VoxelBody ground =
+      naive::voxelize(naive::box({0.04, 0.04, 0.04}), 0.01);  // faces in voxel walls: layers 0 at both
   Pointshell one;
   one.x = one.y = {0.002F};
   one.z = {0.0F};
