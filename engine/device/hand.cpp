@@ -104,7 +104,9 @@ class HandDevice final : public Device {
       dwelling_ -= dt;
       return;
     }
-    if ((target().position + error_ - x_).norm() > hand_.lead) {
+    const Vector3d ahead = target().position + error_ - x_;
+    const Vector3d leg = to.pose.position - hand_.path[from_].pose.position;
+    if (ahead.norm() > hand_.lead && ahead.dot(leg) >= 0) {  // a target that comes back towards the hand need not wait
       waited_ += dt;
       if (waited_ > hand_.patience && goal_ != from_) retry();
       return;
