@@ -1,8 +1,7 @@
 // Pointshell of body B against the voxmap of body A: the innermost loop.
 //
 // Source: Voxmap PointShell (McNeely et al. 1999), tangent-plane force; dissertation section 8.2.2 (a list of collision
-// pairs is returned, separately from summing them). Coordinates: everything in the list is in the body coordinates of
-// A.
+// pairs is returned, separately from summing them). Everything in the list is in the body coordinates of A.
 //
 // A point p with inward normal n (B's, rotated into A) in a voxel of layer L <= 0 with centre c has the depth
 //     d = (c - p).n + |L| s          (s: voxel size; the tangent plane through the centre, moved out by whole layers)
