@@ -28,11 +28,11 @@ struct Plane {
 
 /// p(u, v) = point + radius (cos u x + sin u y) + v direction
 struct Cylinder {
-  Vector3d point;      ///< any point of the axis
+  Vector3d point;  ///< any point of the axis
   Vector3d direction;
   Vector3d x_axis;
-  double radius;       ///< > 0
-  bool hole;           ///< true: material is outside the radius
+  double radius;  ///< > 0
+  bool hole;      ///< true: material is outside the radius
 };
 
 /// p(u, v) = point + (radius + v tan(half_angle)) (cos u x + sin u y) + v direction; v is measured ALONG THE AXIS.
@@ -40,8 +40,8 @@ struct Cone {
   Vector3d point;      ///< of the axis, where the radius is `radius`
   Vector3d direction;  ///< towards growing radius
   Vector3d x_axis;
-  double radius;       ///< at `point`, >= 0
-  double half_angle;   ///< in (0, pi/2)
+  double radius;      ///< at `point`, >= 0
+  double half_angle;  ///< in (0, pi/2)
   bool hole;
 };
 
@@ -106,8 +106,8 @@ struct Face {
   Surface surface;
   std::array<double, 2> u_range = {0, 0};  ///< trimmed bounds in the surface's parameters (see above)
   std::array<double, 2> v_range = {0, 0};
-  double area = 0;                         ///< exact, m^2
-  std::vector<std::uint32_t> edges;        ///< indices of its bounding edges in the part
+  double area = 0;                   ///< exact, m^2
+  std::vector<std::uint32_t> edges;  ///< indices of its bounding edges in the part
 };
 
 struct Edge {
@@ -115,7 +115,7 @@ struct Edge {
   std::array<double, 2> t_range = {0, 0};  ///< trimmed bounds in the curve's parameter
   double length = 0;                       ///< m
   std::vector<Vector3d> polyline;          ///< points along the edge, as the tessellation has them
-  std::vector<std::uint32_t> faces;        ///< the two faces that it bounds; one: a seam, where a round face meets itself
+  std::vector<std::uint32_t> faces;  ///< the two faces that it bounds; one: a seam, where a round face meets itself
 };
 
 }  // namespace verisim

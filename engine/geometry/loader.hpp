@@ -1,10 +1,11 @@
 // Reads models into parts, in a child process (program verisim-cad beside this one): STEP, BREP and Solids through
-// OpenCASCADE, STL, OBJ, PLY and glTF through assimp. Neither is thread-safe for us, some files crash the one or make the
-// other read for ever, and both must be bad input here. About 20 ms for starting the program.
+// OpenCASCADE, STL, OBJ, PLY and glTF through assimp. Neither is thread-safe for us, some files crash the one or make
+// the other read for ever, and both must be bad input here. About 20 ms for starting the program.
 //
-// Errors: Error(input) naming the file, what is wrong and what to do: empty, truncated, damaged, no solid or triangle in
-// it, NaN. A mesh that stays open, non-manifold or self-intersecting after repair loads: its part is not watertight and
-// its notes say what is wrong, where and what to do. Error(io) if verisim-cad is missing or a file cannot be written.
+// Errors: Error(input) naming the file, what is wrong and what to do: empty, truncated, damaged, no solid or triangle
+// in it, NaN. A mesh that stays open, non-manifold or self-intersecting after repair loads: its part is not watertight
+// and its notes say what is wrong, where and what to do. Error(io) if verisim-cad is missing or a file cannot be
+// written.
 #pragma once
 
 #include <string>
@@ -16,9 +17,9 @@
 namespace verisim {
 
 struct LoadOptions {
-  double scale = 0;             ///< metres per unit of a mesh file; 0: metres for meshes, the file's own unit for STEP/BREP
-                                ///< (mm for BREP). Given for STEP it multiplies the file's own.
-  double deflection = 0;        ///< chord error of the tessellation [m]; 0: 1/2000 of the bounding box diagonal
+  double scale = 0;       ///< metres per unit of a mesh file; 0: metres for meshes, the file's own unit for STEP/BREP
+                          ///< (mm for BREP). Given for STEP it multiplies the file's own.
+  double deflection = 0;  ///< chord error of the tessellation [m]; 0: 1/2000 of the bounding box diagonal
   double angular_deflection = 0.1;  ///< rad
 };
 
@@ -26,11 +27,13 @@ struct LoadOptions {
 /// Coordinates coming from the CAD kernel are rounded to 2^-36 m and derived numbers to 40 bits, so that the kernel's
 /// last-bit differences between CPUs do not reach a state hash.
 /// `content` is the file's bytes (already read by the caller, who records them); `path` gives format and error texts.
-[[nodiscard]] std::vector<Part> load_model(const std::string& path, const std::string& content, const LoadOptions& options);
+[[nodiscard]] std::vector<Part> load_model(const std::string& path, const std::string& content,
+                                           const LoadOptions& options);
 
 [[nodiscard]] Part load_solid(const Solid& solid, const LoadOptions& options);
 
-/// Writes the solids as one STEP file (AP214, mm) through the same child process: scenes made of files the project wrote.
+/// Writes the solids as one STEP file (AP214, mm) through the same child process: scenes made of files the project
+/// wrote.
 void write_step(const std::string& path, const std::vector<std::pair<std::string, Solid>>& solids);
 
 /// Binary STL in the mesh's own units times `units_per_metre` (1000: millimetres).

@@ -13,10 +13,11 @@ namespace verisim {
 
 inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
 
-struct TriangleMesh {                                   //  shape  unit  meaning
-  std::vector<Vector3d> vertices;                       //  (n)    m     shared corners
-  std::vector<std::array<std::uint32_t, 3>> triangles;  //  (m)    -     counter-clockwise seen from outside the material
-  std::vector<std::uint32_t> face_of_triangle;          //  (m)    -     index of the b-rep face, kNoFace; empty = no b-rep
+struct TriangleMesh {              //  shape  unit  meaning
+  std::vector<Vector3d> vertices;  //  (n)    m     shared corners
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;                                //  (m)    -     counter-clockwise seen from outside the material
+  std::vector<std::uint32_t> face_of_triangle;  //  (m)    -     index of the b-rep face, kNoFace; empty = no b-rep
 };
 
 struct Bounds {
@@ -48,14 +49,14 @@ struct MassProperties {
 struct MeshReport {
   std::size_t degenerate_triangles = 0;  ///< repeated corners or zero area
   std::size_t duplicate_triangles = 0;
-  std::size_t open_edges = 0;            ///< edges with one triangle
-  std::size_t nonmanifold_edges = 0;     ///< edges with more than two
-  std::size_t misoriented_edges = 0;     ///< edges whose two triangles run the same way
-  std::size_t self_intersections = 0;    ///< pairs of triangles that cross (CGAL)
+  std::size_t open_edges = 0;          ///< edges with one triangle
+  std::size_t nonmanifold_edges = 0;   ///< edges with more than two
+  std::size_t misoriented_edges = 0;   ///< edges whose two triangles run the same way
+  std::size_t self_intersections = 0;  ///< pairs of triangles that cross (CGAL)
   std::size_t components = 0;
-  bool inside_out = false;               ///< closed, but bounds a negative volume
-  bool not_finite = false;               ///< NaN or infinity among the vertices
-  Vector3d where = Vector3d::Zero();     ///< near the first open or non-manifold edge
+  bool inside_out = false;            ///< closed, but bounds a negative volume
+  bool not_finite = false;            ///< NaN or infinity among the vertices
+  Vector3d where = Vector3d::Zero();  ///< near the first open or non-manifold edge
   [[nodiscard]] bool watertight() const {
     return open_edges == 0 && nonmanifold_edges == 0 && misoriented_edges == 0 && !inside_out && !not_finite;
   }

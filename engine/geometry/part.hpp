@@ -12,16 +12,16 @@
 namespace verisim {
 
 struct Part {
-  std::string name;                          ///< as the file names it; made unique within the model ("Undefined#2")
+  std::string name;  ///< as the file names it; made unique within the model ("Undefined#2")
   std::array<float, 4> color = {0.7F, 0.7F, 0.7F, 1};
-  TriangleMesh mesh;                         ///< part coordinates as placed by the file, scaled to metres
-  std::vector<Face> faces;                   ///< empty: no b-rep is known
+  TriangleMesh mesh;        ///< part coordinates as placed by the file, scaled to metres
+  std::vector<Face> faces;  ///< empty: no b-rep is known
   std::vector<Edge> edges;
-  MassProperties mass;                       ///< exact where the geometry is, else that of the mesh
-  double area = 0;                           ///< m^2
+  MassProperties mass;  ///< exact where the geometry is, else that of the mesh
+  double area = 0;      ///< m^2
   bool watertight = false;
-  bool exact = false;                        ///< faces, edges and mass come from exact geometry
-  std::vector<std::string> notes;            ///< repairs and questioned things, one sentence each
+  bool exact = false;              ///< faces, edges and mass come from exact geometry
+  std::vector<std::string> notes;  ///< repairs and questioned things, one sentence each
 
   [[nodiscard]] bool has_brep() const { return !faces.empty(); }
 };
@@ -37,8 +37,8 @@ struct Mate {
 /// ordered by clearance, then part names. Equal rows are listed once.
 [[nodiscard]] std::vector<Mate> mating_candidates(const std::vector<Part>& parts, double tolerance = 0.15);
 
-/// A part as tables (vertices, triangles, faces, edges, mass …) and back: what a run file embeds, so that `replay` needs
-/// no CAD kernel. Round trip is exact to the bit.
+/// A part as tables (vertices, triangles, faces, edges, mass …) and back: what a run file embeds, so that `replay`
+/// needs no CAD kernel. Round trip is exact to the bit.
 [[nodiscard]] std::vector<NamedArray> to_tables(const Part& part);
 [[nodiscard]] Part from_tables(const std::string& name, const std::vector<NamedArray>& tables);
 
