@@ -31,7 +31,7 @@ HOME_OF_LIBRARY = {
     r"hdf5\.h|H5\w+\.h": ["engine/record/"],
     r"lua\.hpp|lua\.h|lauxlib\.h": ["engine/script/"],
     r"(BRep|TopExp|TopoDS|TopAbs|gp_|Geom|STEP|XCAF|TDF|TDoc|Poly_|Standard_|GProp)\w*\.hxx": ["engine/geometry/cad/"],
-    r"assimp/.*": ["engine/geometry/"],
+    r"assimp/.*": ["engine/geometry/cad/"],
     r"CGAL/.*": ["engine/geometry/"],
     r"fcl/.*": ["engine/contact/"],
     r"hwy/.*": ["engine/contact/"],
