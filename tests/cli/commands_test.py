@@ -1,0 +1,156 @@
+"""Commands, options and what they print (INTERFACES section 1)."""
+import json
+import os
+import subprocess
+import unittest
+
+import h5py
+
+from program import ProgramTest, SMALL, VERISIM
+
+COMMANDS = ["run", "replay", "recover", "inspect", "trace", "doctor"]
+
+
+class Commands(ProgramTest):
+    def test_each_explains_itself_with_an_example(self):
+        for command in COMMANDS:
+            text = self.succeed(command, "--help").stdout
+            self.assertTrue("Example:" in text or command == "trace", command)
+        for command in ["info", "convert", "synth"]:
+            self.assertIn("Example:", self.succeed("trace", command, "--help").stdout)
+
+    def test_wrong_usage_is_exit_2(self):
+        scenario = self.write("small.lua", SMALL)
+        self.refuse(2, "--help")
+        self.refuse(2, "--help", "fly")
+        self.refuse(2, "--help", "run")
+        self.refuse(2, "--help", "run", scenario, "--bogus")
+        self.refuse(2, "NAME=VALUE", "run", scenario, "--set", "voxelsize")
+        self.refuse(2, "--help", "run", scenario, "--duration", "-1")
+        self.refuse(2, ["AVX9", "scalar"], "run", scenario, "--simd", "AVX9")
+
+    def test_run_prints_the_promised_keys(self):
+        run_file, summary = self.small_run()
+        for key in ["scenario", "run_file", "frames", "simulated_s", "wall_s", "realtime_factor", "collision_frames",
+                    "overruns", "cache_hits", "cache_misses", "constraints", "max_force_N", "max_penetration_m", "outcome",
+                    "state_hash", "frame_ns", "collision_frame_ns", "load_s"]:
+            self.assertIn(key, summary)
+        self.assertEqual(summary["frames"], 300)
+        self.assertEqual(summary["run_file"], run_file)
+        self.assertRegex(summary["state_hash"], "^[0-9a-f]{16}$")
+        self.assertEqual(sorted(summary["frame_ns"]), ["max", "p50", "p99"])
+        self.assertGreater(summary["collision_frames"], 50)
+
+    def test_quiet_says_nothing_and_a_pipe_sees_no_progress_bar(self):
+        scenario = self.write("small.lua", SMALL)
+        quiet = self.succeed("run", scenario, "-o", self.path("a.h5"), "--quiet")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+        self.assertNotIn("\r", self.succeed("run", scenario, "-o", self.path("a.h5")).stderr)
+
+    def test_a_closed_pipe_kills_nothing(self):
+        scenario = self.write("small.lua", SMALL)
+        shell = f'"{VERISIM}" run "{scenario}" -o "{self.path("a.h5")}" --json | true'
+        self.assertEqual(subprocess.run(["bash", "-c", shell], cwd=self.folder).returncode, 0)
+        with h5py.File(self.path("a.h5")) as f:
+            self.assertEqual(len(f["/state/time"]), 300)
+
+    def test_set_changes_parameters_and_a_bare_word_is_a_string(self):
+        run_file, _ = self.small_run("--set", "voxelsize=mm(20)/2", "--set", "word=H7/g6")
+        with h5py.File(run_file) as f:
+            parameters = json.loads(f.attrs["parameters"])
+        self.assertEqual(parameters["voxelsize"], 0.01)
+        self.assertEqual(parameters["word"], "H7/g6")
+
+    def test_duration_and_seed_win_over_the_script(self):
+        run_file, summary = self.small_run("--duration", "0.05", "--seed", "7")
+        self.assertEqual(summary["frames"], 50)
+        with h5py.File(run_file) as f:
+            self.assertEqual(f.attrs["seed"], 7)
+
+    def test_seeds_simd_targets_and_threads_change_what_they_should(self):
+        script = SMALL.replace('name = "hand",', 'name = "hand", tremor = 0.001,')
+        hashes = [self.small_run(*options, script=script)[1]["state_hash"] for options in
+                  [[], ["--threads", "2"], ["--simd", "scalar"], ["--seed", "5"]]]
+        self.assertEqual(hashes[0], hashes[1])
+        self.assertEqual(hashes[0], hashes[2])
+        self.assertNotEqual(hashes[0], hashes[3])
+
+    def test_realtime_takes_its_time(self):
+        summary = self.small_run("--realtime", "--duration", "0.2")[1]
+        self.assertGreater(summary["wall_s"], 0.19)
+        self.assertAlmostEqual(summary["realtime_factor"], 1, delta=0.2)
+
+    def test_the_run_file_is_what_interfaces_says(self):
+        run_file, summary = self.small_run()
+        with h5py.File(run_file) as f:
+            self.assertEqual(f.attrs["format"], "verisim-run")
+            for key in ["format_version", "scenario", "scenario_sha256", "parameters", "seed", "dt", "version", "state_hash"]:
+                self.assertIn(key, f.attrs)
+            self.assertEqual(f.attrs["state_hash"], summary["state_hash"])
+            n = summary["frames"]
+            shapes = {"/state/time": (n,), "/state/body/box/pose": (n, 7), "/state/body/box/twist": (n, 6),
+                      "/state/body/box/force": (n, 6), "/state/device/hand/handle_pose": (n, 7),
+                      "/state/device/hand/raw_pose": (n, 7), "/state/device/hand/wrench": (n, 6),
+                      "/state/link/plate~box/contacts": (n,), "/state/link/plate~box/constraint": (n,),
+                      "/state/link/plate~box/alignment": (n,), "/state/link/plate~box/max_penetration": (n,),
+                      "/state/link/plate~box/wrench": (n, 6), "/state/hash": (n,), "/timing/frame_ns": (n,),
+                      "/timing/period_ns": (n,), "/timing/overrun": (n,)}
+            for path, shape in shapes.items():
+                self.assertEqual(f[path].shape, shape, path)
+            self.assertEqual(f["/state/time"][0], 0.001)
+            self.assertEqual(format(f["/state/hash"][-1], "016x"), summary["state_hash"])
+
+            def documented(name, item):
+                if isinstance(item, h5py.Dataset) and not name.startswith("inputs"):
+                    self.assertIn("description", item.attrs, name)
+                    self.assertTrue("units" in item.attrs or name == "events", name)
+            f.visititems(documented)
+            self.assertEqual(f["/summary"].attrs["frames"], n)
+
+    def test_doctor_lists_simd_targets(self):
+        self.assertIn("scalar", json.loads(self.succeed("doctor", "--json").stdout)["simd"])
+
+    def test_inspect_counts_voxels(self):
+        stl = self.write("tetrahedron.stl", """solid t
+facet normal 0 0 -1
+outer loop
+vertex 0 0 0
+vertex 0 10 0
+vertex 10 0 0
+endloop
+endfacet
+facet normal 0 -1 0
+outer loop
+vertex 0 0 0
+vertex 10 0 0
+vertex 0 0 10
+endloop
+endfacet
+facet normal -1 0 0
+outer loop
+vertex 0 0 0
+vertex 0 0 10
+vertex 0 10 0
+endloop
+endfacet
+facet normal 1 1 1
+outer loop
+vertex 10 0 0
+vertex 0 10 0
+vertex 0 0 10
+endloop
+endfacet
+endsolid t
+""")
+        report = self.run_json("inspect", stl, "--scale", "0.001", "--voxel", "0.0005")
+        part = report["parts"][0]
+        self.assertTrue(part["watertight"])
+        self.assertAlmostEqual(part["volume_m3"], 1e-6 / 6, delta=1e-15)
+        self.assertEqual(part["triangles"], 4)
+        self.assertGreater(part["surface_voxels"], 300)
+        self.assertGreater(part["memory_bytes"], 0)
+        self.assertEqual(report["mates"], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

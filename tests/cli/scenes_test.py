@@ -1,0 +1,76 @@
+"""The shipped scenarios: a golden hash and golden physical facts each. A hash changes only in a commit that says which
+behaviour changed and why; VERISIM_GOLDEN=1 prints what is measured."""
+import os
+import unittest
+
+from program import ProgramTest, SHARED, SOURCE
+
+MODELS = os.path.join(SHARED, "models")
+
+
+class Scenes(ProgramTest):
+    def scene(self, name, *options):
+        run_file = self.path(name + ".h5")
+        summary = self.run_json("run", os.path.join(SOURCE, "scenarios", name + ".lua"), "-o", run_file, *options)
+        self.succeed("replay", run_file, "--verify")
+        if os.environ.get("VERISIM_GOLDEN"):
+            print(f"\n{name} {options}: {summary['state_hash']} {summary['outcome']}, {summary['collision_frames']} "
+                  f"collision frames, {summary['measures']}")
+        return summary
+
+    def test_peg_in_hole(self):
+        s = self.scene("peg_in_hole")
+        self.assertEqual(s["frames"], 45833)
+        self.assertGreaterEqual(s["collision_frames"], 11053)  # the dissertation's trial
+        self.assertEqual(s["outcome"], "inserted")
+        self.assertGreaterEqual(s["measures"]["passes"]["value"], 3)
+        self.assertLess(s["max_penetration_m"], 0.0045)
+
+    def test_peg_in_hole_in_the_published_scripts_sizes(self):
+        s = self.scene("peg_in_hole", "--set", "half=true", "--duration", "5")
+        self.assertGreater(s["collision_frames"], 500)
+
+    def test_peg_in_hole_step(self):
+        s = self.scene("peg_in_hole_step", "--duration", "5")
+        self.assertEqual(s["outcome"], "inserted")
+        self.assertGreater(s["collision_frames"], 500)
+
+    def test_slide(self):
+        s = self.scene("slide")
+        self.assertEqual(s["outcome"], "slid")
+        self.assertLess(s["measures"]["height_max"]["value"], 0.003)    # never more than a voxel above the plate …
+        self.assertGreater(s["measures"]["height_min"]["value"], -0.003)  # … or in it
+
+    def test_stack(self):
+        for integrator in ["semi-implicit", "implicit"]:
+            self.assertEqual(self.scene("stack", "--set", "integrator=" + integrator)["outcome"], "stacked", integrator)
+
+    @unittest.skipUnless(os.path.isdir(MODELS), "the shared models are not there")
+    def test_assembly_of_real_parts(self):
+        crank = [os.path.join(MODELS, "freecad_cc0", f) for f in ("crank_base.stp", "crank_disk.stp")]
+        s = self.scene("assembly", "--set", "model=" + ",".join(crank), "--set", "part=2")
+        self.assertTrue(s["outcome"].startswith("pulled"), s["outcome"])
+        bearing = os.path.join(MODELS, "occt", "Axis_of_bearing.stp")
+        s = self.scene("assembly", "--set", "model=" + bearing, "--set", "part=4", "--set", "direction={1,0,0}",
+                       "--set", "voxelsize=mm(1)")
+        self.assertGreater(s["frames"], 500)
+        board = [os.path.join(MODELS, "nist_boards", f) for f in
+                 ("taskboard-pegarray2-1.STL", "taskboard_round_peg-1.STL")]
+        s = self.scene("assembly", "--set", "model=" + ",".join(board), "--set", "scale=0.001", "--set", "part=2")
+        self.assertGreater(s["collision_frames"], 0)
+
+    def test_golden_hashes(self):
+        for name, options, golden in GOLDEN:
+            summary = self.scene(name, *options)
+            self.assertEqual(summary["state_hash"], golden, name)
+
+
+GOLDEN = [
+    ("peg_in_hole", ["--duration", "3"], ""),
+    ("peg_in_hole_step", ["--duration", "3"], ""),
+    ("slide", [], ""),
+    ("stack", [], ""),
+]
+
+if __name__ == "__main__":
+    unittest.main()
