@@ -1,6 +1,7 @@
 // What recording costs: the loop, which must not feel it (under 1 us a frame), and the writer beside it. A row of 41
 // columns and about 1 kB, as the peg scene with three links writes it; the run is the dissertation's, 45,833 frames.
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -70,7 +71,18 @@ struct Measured {
   std::vector<double> loop_ns;  ///< begin_row, copying the row, end_row
   double total_s = 0;           ///< first row to closed file
   double close_s = 0;
+  double writer_cpu_s = 0;  ///< of all threads but this one, closing included
 };
+
+/// Processor time used so far by the whole process (RUSAGE_SELF) or by this thread alone (RUSAGE_THREAD).
+double cpu_seconds(int who) {
+  rusage used{};
+  ::getrusage(who, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
 
 Measured record(const std::vector<std::byte>& rows, const Schema& s, std::size_t frames, bool paced,
                 std::size_t ring_rows) {
@@ -78,6 +90,7 @@ Measured record(const std::vector<std::byte>& rows, const Schema& s, std::size_t
   m.loop_ns.reserve(frames);
   const std::size_t kinds = rows.size() / s.row_bytes();
   Recorder recorder(file(), s, {}, {.paced = paced, .ring_rows = ring_rows});
+  const double others = cpu_seconds(RUSAGE_SELF) - cpu_seconds(RUSAGE_THREAD);
   const auto start = Clock::now();
   for (std::size_t i = 0; i < frames; ++i) {
     const auto before = Clock::now();
@@ -86,7 +99,10 @@ Measured record(const std::vector<std::byte>& rows, const Schema& s, std::size_t
     m.loop_ns.push_back(std::chrono::duration<double, std::nano>(Clock::now() - before).count());
   }
   const auto closing = Clock::now();
+  const double own = cpu_seconds(RUSAGE_THREAD);
   recorder.close({}, {});
+  const double closing_cpu = cpu_seconds(RUSAGE_THREAD) - own;
+  m.writer_cpu_s = cpu_seconds(RUSAGE_SELF) - cpu_seconds(RUSAGE_THREAD) - others + closing_cpu;
   m.close_s = std::chrono::duration<double>(Clock::now() - closing).count();
   m.total_s = std::chrono::duration<double>(Clock::now() - start).count();
   std::sort(m.loop_ns.begin(), m.loop_ns.end());
@@ -115,6 +131,7 @@ void report(benchmark::State& state, const Measured& m, const Schema& s, std::si
   state.counters["loop_ns_max"] = m.loop_ns.back();
   state.counters["rows_per_s"] = n / m.total_s;
   state.counters["close_ms"] = m.close_s * 1e3;
+  state.counters["writer_cpu_ms"] = m.writer_cpu_s * 1e3;
   state.counters["columns"] = static_cast<double>(s.columns().size());
   state.counters["row_bytes"] = static_cast<double>(s.row_bytes());
   state.counters["file_per_row_bytes"] = static_cast<double>(std::filesystem::file_size(file())) / n;

@@ -111,6 +111,11 @@ Reservation::Reservation(const std::string& path)
 }
 
 Reservation::~Reservation() {
+  struct stat info {};
+  if (::fstat(descriptor_, &info) == 0 && static_cast<std::uint64_t>(info.st_size) < end_) {
+    const auto rest = static_cast<off_t>(end_) - info.st_size;
+    static_cast<void>(::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, info.st_size, rest));
+  }
   ::close(descriptor_);
 }
 

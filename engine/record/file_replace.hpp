@@ -64,7 +64,7 @@ class MarkedFile {
 class Reservation {
  public:
   explicit Reservation(const std::string& path);
-  ~Reservation();
+  ~Reservation();  ///< gives back what the file did not need
   Reservation(const Reservation&) = delete;
   Reservation& operator=(const Reservation&) = delete;
   /// Makes sure that the file can grow by `bytes`. Error(io). Usually one fstat; takes `step` more when it takes some.

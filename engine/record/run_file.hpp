@@ -82,7 +82,7 @@ struct Event {
 
 struct RecorderOptions {
   bool paced = false;                  ///< never wait for the file: a full ring is Error(io)
-  std::size_t frames_unflushed = 100;  ///< free-running: the loop waits while so many rows are not safe on disk
+  std::size_t frames_unflushed = 100;  ///< free-running: a kill costs at most so many frames; the loop waits for that
   std::size_t ring_rows = 0;           ///< 0: chosen (256 free-running; 8 s of frames paced)
 };
 
@@ -91,7 +91,8 @@ class Recorder {
  public:
   /// Creates the file and writes header and inputs. Throws Error(io) if it cannot be written.
   Recorder(const std::string& path, const Schema& schema, const RunHeader& header, const RecorderOptions& options);
-  ~Recorder();  ///< not closed: drops the writer, keeps what is safe (as a kill would)
+  /// Not closed (an exception): the rows are kept in a readable file without /summary; a run without a row leaves none.
+  ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 

@@ -232,6 +232,7 @@ void RunWriter::close(const std::map<std::string, Attribute>& summary, const std
   const hdf5::Session session;
   guard([&] {
     close_handles();
+    room_.reset();  // the copy may need it
     Replacement finished(path_, ".closing");
     finished.copy_from(mark_->descriptor());
     {

@@ -208,23 +208,55 @@ TEST(Recorder, TellsTheLoopThatTheDiskIsFull) {
   EXPECT_FALSE(run.recovered());  // it could even be closed
 }
 
-// The same on a real file system of 2 MB, where this test may mount one.
+/// A file system of its own in a folder, until the end of the scope; not there if this process may not mount.
+class SmallDisk {
+ public:
+  SmallDisk(const std::string& folder, const std::string& size) : folder_(folder) {
+    std::filesystem::create_directory(folder);
+    mounted_ = ::mount("none", folder.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) ::umount(folder_.c_str());
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  [[nodiscard]] bool mounted() const { return mounted_; }
+
+ private:
+  std::string folder_;
+  bool mounted_ = false;
+};
+
 TEST(Recorder, KeepsWhatWasSafeOnADiskThatIsReallyFull) {
   const Folder folder;
-  std::filesystem::create_directory(folder.file("disk"));
-  const std::string disk = folder.file("disk");
-  if (::mount("none", disk.c_str(), "tmpfs", 0, "size=2m") != 0) GTEST_SKIP() << "may not mount a small tmpfs here";
+  const SmallDisk disk(folder.file("disk"), "2m");
+  if (!disk.mounted()) GTEST_SKIP() << "may not mount a small tmpfs here: a full disk was not tried";
   const Error e = error_of([&] {
-    Recorder recorder(disk + "/run.h5", schema(), header(), {});
+    Recorder recorder(folder.file("disk/run.h5"), schema(), header(), {});
     record(recorder, 0, 1'000'000);
   });
   EXPECT_EQ(e.kind(), ErrorKind::io);
   EXPECT_NE(std::string(e.what()).find("No space left"), std::string::npos) << e.what();
-  std::filesystem::copy_file(disk + "/run.h5", folder.file("run.h5"));
-  ::umount(disk.c_str());
-  const RunFile run(folder.file("run.h5"));
+  const RunFile run(folder.file("disk/run.h5"));
   EXPECT_GT(run.rows(), 5000u);
   EXPECT_EQ(first_wrong_row(run), run.rows());
+}
+
+// Closing needs room for a copy. Without it the frames stay readable; only /summary is missing.
+TEST(Recorder, KeepsEveryRowWhenThereIsNoRoomToClose) {
+  const Folder folder;
+  const SmallDisk disk(folder.file("disk"), "4m");
+  if (!disk.mounted()) GTEST_SKIP() << "may not mount a small tmpfs here: a full disk was not tried";
+  {
+    Recorder recorder(folder.file("disk/run.h5"), schema(), header(), {});
+    record(recorder, 0, 25'000);  // more than half of the disk
+    EXPECT_EQ(error_of([&] { recorder.close({}, {}); }).kind(), ErrorKind::io);
+  }
+  const RunFile run(folder.file("disk/run.h5"));
+  EXPECT_FALSE(run.recovered());
+  EXPECT_EQ(run.rows(), 25'000u);
+  EXPECT_EQ(first_wrong_row(run), 25'000u);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("disk/run.h5.closing")));
 }
 
 TEST(Recorder, SaysAtOnceThatTheDiskWasFullFromTheStart) {
