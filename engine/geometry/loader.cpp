@@ -78,10 +78,8 @@ std::string place_text(const Vector3d& p) {
 void note_faults(const MeshReport& report, std::vector<std::string>& notes) {
   const std::string near = " near " + place_text(report.where);
   if (report.open_edges > 0) {
-    notes.push_back(
-        fmt::format("the surface is open along {} edge{}{}; close it in the program that made it (T-joints count: a "
-                    "corner of one triangle within another's edge)",
-                    report.open_edges, report.open_edges == 1 ? "" : "s", near));
+    notes.push_back(fmt::format("the surface is open along {} edge{}{}; close it in the program that made it",
+                                report.open_edges, report.open_edges == 1 ? "" : "s", near));
   }
   if (report.nonmanifold_edges > 0) {
     notes.push_back(fmt::format("{} edge{} have more than two triangles{}; remove inner walls and doubled faces",

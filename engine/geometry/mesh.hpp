@@ -62,8 +62,11 @@ struct MeshReport {
   }
 };
 
-/// Welds equal vertices, drops degenerate and duplicate triangles, orients components consistently and outward (nested
-/// shells alternately), fills nothing. `mesh` is changed in place; every repair is one sentence in `notes`.
+/// Welds equal vertices, drops degenerate and duplicate triangles, closes seams, orients components consistently and
+/// outward (nested shells alternately). T-joints are closed: where a corner lies on another triangle's open edge, to
+/// 1e-6 of the mesh's diagonal, that triangle is cut there; ends of open edges as near to each other as that become
+/// one. Nothing else of a surface that is open is touched, and no gap wider than that is filled. `mesh` is changed in
+/// place, face_of_triangle with it; every repair is one sentence in `notes`.
 /// @returns the report of the mesh as it is afterwards.
 MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes);
 

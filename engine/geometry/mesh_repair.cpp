@@ -9,6 +9,7 @@
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/mesh.hpp"
 #include "engine/geometry/mesh_edges.hpp"
+#include "engine/geometry/mesh_joints.hpp"
 
 namespace verisim {
 namespace {
@@ -207,18 +208,65 @@ std::size_t orient_outward(TriangleMesh& mesh) {
   return turned;
 }
 
+struct Dropped {
+  std::size_t repeated = 0, duplicate = 0, flat = 0;
+};
+
+void drop_useless_triangles(TriangleMesh& mesh, Dropped& dropped) {
+  dropped.repeated += drop_repeated_corners(mesh);
+  dropped.duplicate += drop_duplicates(mesh);
+  dropped.flat += drop_flat_triangles(mesh);
+}
+
+void note_dropped(const Dropped& dropped, std::vector<std::string>& notes) {
+  if (dropped.repeated > 0) notes.push_back(counted(dropped.repeated, "triangle") + " with two equal corners dropped");
+  if (dropped.duplicate > 0) notes.push_back(counted(dropped.duplicate, "duplicate triangle") + " dropped");
+  if (dropped.flat > 0) notes.push_back(counted(dropped.flat, "triangle") + " of zero area dropped");
+}
+
+/// Wide enough for coordinates in single precision on a part within ten of its diagonals of the origin, and far below
+/// any clearance that could be simulated.
+constexpr double kJointTolerance = 1e-6;  // of the mesh's diagonal
+
+/// A side is cut once, a triangle once for each of its sides; the rest is for what the tolerance brings in later.
+constexpr unsigned kMaxRounds = 16;
+
+/// Closes seams until nothing changes. What the closing makes useless is dropped without a word of its own: it is part
+/// of the closing.
+void close_joints(TriangleMesh& mesh, std::vector<std::string>& notes) {
+  std::vector<Side> open = open_sides(mesh);
+  const std::size_t before = open.size();
+  const double tolerance = kJointTolerance * bounds_of(mesh).size().norm();
+  std::size_t joined = 0;
+  std::size_t cut = 0;
+  Dropped dropped;
+  for (unsigned round = 0; round < kMaxRounds && !open.empty(); ++round) {
+    const std::size_t joined_now = join_near_corners(mesh, open, tolerance);
+    // Joined corners have other numbers: the sides are to be found again before anything is cut.
+    const std::size_t cut_now = joined_now > 0 ? 0 : cut_at_joints(mesh, open, tolerance);
+    if (joined_now + cut_now == 0) break;
+    joined += joined_now;
+    cut += cut_now;
+    drop_useless_triangles(mesh, dropped);
+    open = open_sides(mesh);
+  }
+  if (joined + cut == 0) return;
+  notes.push_back(
+      fmt::format("{} closed within {:.2g} m (1e-6 of the diagonal), {} left: {} joined, {} cut at T-joints",
+                  counted(before - std::min(before, open.size()), "open edge"), tolerance, open.size(),
+                  counted(joined, "corner"), counted(cut, "triangle")));
+}
+
 }  // namespace
 
 MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes) {
   MeshReport report = examine(mesh, false);
   if (report.not_finite) return report;  // nothing can be decided about such a mesh
   weld(mesh);
-  const std::size_t repeated = drop_repeated_corners(mesh);
-  if (repeated > 0) notes.push_back(counted(repeated, "triangle") + " with two equal corners dropped");
-  const std::size_t duplicates = drop_duplicates(mesh);
-  if (duplicates > 0) notes.push_back(counted(duplicates, "duplicate triangle") + " dropped");
-  const std::size_t flat = drop_flat_triangles(mesh);
-  if (flat > 0) notes.push_back(counted(flat, "triangle") + " of zero area dropped");
+  Dropped dropped;
+  drop_useless_triangles(mesh, dropped);
+  note_dropped(dropped, notes);
+  close_joints(mesh, notes);
   const std::size_t turned = orient_consistently(mesh);
   if (turned > 0) notes.push_back(counted(turned, "triangle") + " turned to run like their neighbours");
   report = examine(mesh, false);

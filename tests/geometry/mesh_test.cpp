@@ -250,17 +250,6 @@ TEST(Repair, DoesNotTakeAnOverlapForAVoid) {
   EXPECT_NEAR(mass_properties_of(mesh).volume, 1 + 0.36 * 1.3, 1e-14);
 }
 
-TEST(Repair, LeavesATJointOpenAndReportsIt) {
-  TriangleMesh mesh = unit_box();
-  mesh.vertices.emplace_back(0.5, 0, 0);
-  mesh.triangles[0] = {0, 2, 8};  // two triangles with the halves of an edge that their neighbour has whole
-  mesh.triangles.push_back({8, 2, 1});
-  const MeshReport report = repaired(mesh);
-  EXPECT_EQ(report.open_edges, 3U);
-  EXPECT_FALSE(report.watertight());
-  EXPECT_EQ(report.where.y(), 0);
-}
-
 // A Moebius strip of five triangles has one side: no orientation agrees everywhere.
 TEST(Repair, ReportsASurfaceThatHasOneSide) {
   TriangleMesh mesh;

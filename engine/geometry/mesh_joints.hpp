@@ -1,0 +1,28 @@
+// Seams that are closed in space but not in the triangles' corner numbers: corners that should be one and differ by
+// rounding, and T-joints (a corner of one triangle within another's side). Many exporters write both.
+#pragma once
+
+#include <vector>
+
+#include "engine/geometry/mesh_edges.hpp"
+
+namespace verisim {
+
+/// The sides without a second triangle, in the order of sorted_sides. Only they and their ends take part in the
+/// closing: a closed mesh stays as it is, however fine its details.
+[[nodiscard]] std::vector<Side> open_sides(const TriangleMesh& mesh);
+
+/// Makes one vertex of ends of open sides that lie within `tolerance` [m] of each other; of each such group one keeps
+/// its place. Triangles may be left with two equal corners. n log n unless the ends lie in a plane across their box's
+/// longest direction. @returns how many vertices were given up
+std::size_t join_near_corners(TriangleMesh& mesh, const std::vector<Side>& open, double tolerance);
+
+/// Cuts every triangle in pieces at the ends of open sides that lie within `tolerance` [m] of one of its own open sides
+/// and farther than that from its ends. No corner moves and the pieces belong to the triangle's face. A triangle whose
+/// third corner lies on that side too, to the same tolerance, has no area to cut: it goes, and its two other sides take
+/// the side's place. One side of each triangle is treated; call again until nothing changes.
+/// @param open  open_sides(mesh)
+/// @returns how many triangles were cut or went
+std::size_t cut_at_joints(TriangleMesh& mesh, const std::vector<Side>& open, double tolerance);
+
+}  // namespace verisim
