@@ -13,7 +13,7 @@ import h5py
 
 from program import ProgramTest, SMALL, VERISIM
 
-MOMENTS = int(os.environ.get("VERISIM_KILLS", "30"))  # of each kind; the long form is 100
+MOMENTS = int(os.environ.get("VERISIM_KILLS", "50"))  # of each kind, paced and free-running
 
 
 class Killed(ProgramTest):

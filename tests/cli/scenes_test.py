@@ -66,10 +66,10 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], ""),
+    ("peg_in_hole", ["--duration", "3"], "8ac2d3491ac04a50"),
     ("peg_in_hole_step", ["--duration", "3"], ""),
-    ("slide", [], ""),
-    ("stack", [], ""),
+    ("slide", [], "a445a3bb3647986d"),
+    ("stack", [], "61b2972e63c21265"),
 ]
 
 if __name__ == "__main__":
