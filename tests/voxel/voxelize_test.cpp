@@ -58,9 +58,15 @@ TEST(Voxelize, CountsTheHullOfABox) {
   EXPECT_EQ(body.voxmap.surface_count, cells(17, 25, 41) - cells(15, 23, 39));
   EXPECT_EQ(body.voxmap.layer_at({0, 0, 0}), -kBand - 1);
   EXPECT_EQ(body.voxmap.layer_at({-1, 0, 0}), 0);
-  EXPECT_EQ(body.voxmap.layer_at({-1.125 * 1.0, 0, 0}), 1);
+  EXPECT_EQ(body.voxmap.layer_at({-1.125, 0, 0}), 1);
   EXPECT_EQ(body.voxmap.layer_at({-0.75, 0, 0}), -2);
   EXPECT_EQ(body.voxmap.layer_at({1e300, 0, 0}), kBand + 1);
+}
+
+// Loaders turn shells outward; one that still looks inward bounds nothing, however it is voxelized.
+TEST(Voxelize, FindsNoInsideInAnInvertedShell) {
+  const VoxelBody body = voxelize("box", inside_out(shapes::box({0, 0, 0}, {1, 1, 1})), {.voxel_size = 0.05});
+  EXPECT_GT(body.voxmap.layer_at({0.5, 0.5, 0.5}), 0);
 }
 
 TEST(Voxelize, KeepsItsResultWhenTrianglesAreCutInFour) {
@@ -134,7 +140,6 @@ TEST(Voxmap, ClearanceCountsBricksToTheSurface) {
   const Voxmap& map = body.voxmap;
   std::vector<Eigen::Vector3i> bricks, with_surface;
   plain::for_each_cell(Eigen::Vector3i::Zero(), map.bricks.array() - 1, [&](const auto& b) { bricks.push_back(b); });
-  std::vector<int> first_layer;
   for (std::size_t i = 0; i < bricks.size(); ++i) {
     const auto& mask = map.surface_mask[map.brick_block[i]];
     if (std::any_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word != 0; })) {
