@@ -13,15 +13,27 @@ struct Leaf {
   Pose pose;
 };
 
-void gather(const Node& node, double scale, const Pose& pose, std::vector<Leaf>& leaves) {
-  if (node.kind != Node::Kind::group) {
-    leaves.push_back({&node, scale, pose});
-    return;
+class Gatherer {
+ public:
+  void visit(const Node& node, double scale, const Pose& pose, int depth) {
+    if (++visited_ > kNodesMax)
+      fail(ErrorKind::input, "the object has more than {} nodes; build it from fewer", kNodesMax);
+    if (depth > kNodeDepthMax)
+      fail(ErrorKind::input, "the object's groups are nested more than {} deep; is a group its own child?",
+           kNodeDepthMax);
+    if (node.kind != Node::Kind::group) {
+      leaves.push_back({&node, scale, pose});
+      return;
+    }
+    // pose * (scale * (inner.pose * (inner.scale * x))): a similarity again.
+    const Pose combined = pose * Pose{scale * node.pose.position, node.pose.rotation};
+    for (const auto& child : node.children) visit(*child, scale * node.scale, combined, depth + 1);
   }
-  // pose * (scale * (inner.pose * (inner.scale * x))): a similarity again.
-  const Pose combined = pose * Pose{scale * node.pose.position, node.pose.rotation};
-  for (const auto& child : node.children) gather(*child, scale * node.scale, combined, leaves);
-}
+  std::vector<Leaf> leaves;
+
+ private:
+  int visited_ = 0;
+};
 
 bool same(const Pose& a, const Pose& b) {
   return a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs();
@@ -92,8 +104,9 @@ std::shared_ptr<const Solid> scaled(const std::shared_ptr<const Solid>& solid, d
 }
 
 PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs) {
-  std::vector<Leaf> leaves;
-  for (const auto& node : nodes) gather(*node, 1, Pose{}, leaves);
+  Gatherer gatherer;
+  for (const auto& node : nodes) gatherer.visit(*node, 1, Pose{}, 1);
+  const std::vector<Leaf>& leaves = gatherer.leaves;
   if (leaves.empty()) fail(ErrorKind::input, "the object has no geometry; give it a Model or a Solid");
   PlacedParts result;
   bool one_placement = true;

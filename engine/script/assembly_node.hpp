@@ -24,6 +24,7 @@ struct Node {
   double file_scale = 1;  ///< Model{ scale= }
   // solid
   std::shared_ptr<const Solid> solid;
+  int pieces = 1;  ///< primitives and operations of `solid`, shared ones counted each time
   // group: similarity x -> pose * (scale x)
   double scale = 1;
   Pose pose;
@@ -36,8 +37,13 @@ struct PlacedParts {
   std::string stem;         ///< file name without folder and extension of the first model; empty for solids
 };
 
-/// Loads the leaves below `nodes`. Error(input): from loading; nothing in it; a part number that the file does not
-/// have.
+/// A script can share and nest nodes so that few of them stand for very many: these are the most that are followed.
+inline constexpr int kSolidPiecesMax = 1000;
+inline constexpr int kNodesMax = 10'000;
+inline constexpr int kNodeDepthMax = 100;
+
+/// Loads the leaves below `nodes`. Error(input): more or deeper nested nodes than the limits above; from loading;
+/// nothing in it; a part number that the file does not have.
 [[nodiscard]] PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs);
 
 /// The parts of a model file, with the scale's meaning of LoadOptions.

@@ -7,6 +7,7 @@
 namespace verisim::script {
 
 std::uint64_t FrameActions::add(lua_State* L, int index) {
+  if (actions_.size() >= kActionsMax) raise(L, "there are {} frame actions already; let some end first", kActionsMax);
   lua_pushvalue(L, index);  // first, since a negative index counts from the top
   lua_State* thread = lua_newthread(L);
   lua_insert(L, -2);

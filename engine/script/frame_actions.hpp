@@ -20,7 +20,7 @@ class FrameActions {
  public:
   explicit FrameActions(ScriptState& state) : state_(state) {}
 
-  /// The function at `index` of L becomes an action.
+  /// The function at `index` of L becomes an action. Raises if there are kActionsMax already.
   std::uint64_t add(lua_State* L, int index);
   /// False if there is no such action any more.
   bool remove(std::uint64_t id);

@@ -157,6 +157,7 @@ int print(lua_State* L) {
     line.append(text, size);
     lua_pop(L, 1);
   }
+  Sandbox::of(L).charge(L, 500 + line.size());  // it is kept outside Lua's memory
   Sandbox::of(L).print(line);
   return 0;
 }

@@ -179,7 +179,9 @@ void ScriptState::notice(const std::string& text) {
   if (simulation != nullptr) event("warning", text);  // before that, whoever reads notices() writes the events
 }
 
-void ScriptState::event(const std::string& kind, const std::string& text) {
+void ScriptState::event(const std::string& kind, const std::string& whole_text) {
+  constexpr std::size_t kLongest = 1000;  // the run file keeps less; a script may say anything
+  const std::string text = whole_text.substr(0, kLongest);
   if (simulation != nullptr)
     simulation->add_event(kind, text);
   else

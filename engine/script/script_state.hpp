@@ -22,6 +22,11 @@ namespace verisim::script {
 /// Work units that each action, and each chunk of the run buffer, may spend in one script frame.
 inline constexpr std::uint64_t kFrameWork = 10'000'000;
 
+/// What a line of /events costs a script: it is kept outside Lua's memory.
+inline constexpr std::uint64_t kEventWork = 500;
+/// Frame actions that may be there at one time.
+inline constexpr std::size_t kActionsMax = 1000;
+
 /// A device as described; made real by finish_devices, when seed and bindings are known.
 struct DeviceNode {
   enum class Kind { hardware, replay, hand, scale, translate };

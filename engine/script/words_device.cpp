@@ -11,6 +11,7 @@ namespace {
 
 using DevicePointer = std::shared_ptr<DeviceNode>;
 
+constexpr int kChainMax = 100;        // filters around one device
 constexpr double kOmniScale = 20;     // SPARTA's default for the Phantom Omni
 constexpr double kVirtuoseScale = 1;  // and for the Virtuose
 
@@ -174,6 +175,9 @@ DevicePointer wrapped(lua_State* L, Fields& fields, const char* word) {
   fields.push_child(1);
   DevicePointer inner = device_at(L, lua_gettop(L), fmt::format("{}: the device", word));
   lua_pop(L, 1);
+  int length = 0;
+  for (const DeviceNode* node = inner.get(); node != nullptr; node = node->inner.get()) ++length;
+  if (length > kChainMax) raise(L, "{}: the device has {} filters already; make do with fewer", word, kChainMax);
   return inner;
 }
 
@@ -204,6 +208,7 @@ int add_device(lua_State* L) {
   check_building(L, "addDevice");
   ScriptState& state = ScriptState::of(L);
   DevicePointer device = device_at(L, 1, "addDevice: the device");
+  state.charge(L, 1000 + 100 * state.devices.size());
   for (const DevicePointer& known : state.devices)
     for (const DeviceNode* a = known.get(); a != nullptr; a = a->inner.get())
       for (const DeviceNode* b = device.get(); b != nullptr; b = b->inner.get())

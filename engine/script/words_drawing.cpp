@@ -26,6 +26,7 @@ int drawing_text(lua_State* L) {
 }
 
 void say_ignored(lua_State* L, const std::string& name) {
+  ScriptState::of(L).charge(L, kEventWork);
   ScriptState::of(L).notice(fmt::format("{}: {} only draws or sounds and is ignored", where(L), name));
 }
 

@@ -192,11 +192,15 @@ int matrix_transform(lua_State* L) {
 
 // --- solids ---------------------------------------------------------------------------------------------------------
 
-int push_solid(lua_State* L, Solid solid) {
+int push_solid(lua_State* L, Solid solid, int pieces = 1) {
+  if (pieces > kSolidPiecesMax)
+    raise(L, "the solid is made of more than {} pieces; make it from fewer", kSolidPiecesMax);
+  Sandbox::of(L).charge(L, 100 + 10 * static_cast<std::uint64_t>(pieces));
   check(solid);
   auto node = std::make_shared<Node>();
   node->kind = Node::Kind::solid;
   node->solid = std::make_shared<const Solid>(std::move(solid));
+  node->pieces = pieces;
   push(L, node);
   return 1;
 }
@@ -236,15 +240,17 @@ int tube(lua_State* L) {
   return round_solid(L, Solid::Kind::tube, "Solid.tube", "outer", "inner", "height");
 }
 
-std::shared_ptr<const Solid> solid_at(lua_State* L, int index, const char* what) {
-  const NodePointer node = get<NodePointer>(L, index, what);
+NodePointer solid_at(lua_State* L, int index, const char* what) {
+  NodePointer node = get<NodePointer>(L, index, what);
   if (node->kind != Node::Kind::solid) raise(L, "{} must be a Solid; models of files cannot be cut or joined", what);
-  return node->solid;
+  return node;
 }
 
 int combine(lua_State* L, Solid::Kind kind, const char* what) {
-  return push_solid(
-      L, {.kind = kind, .sizes = {}, .children = {solid_at(L, 1, what), solid_at(L, 2, what)}, .placement = {}});
+  const NodePointer a = solid_at(L, 1, what);
+  const NodePointer b = solid_at(L, 2, what);
+  return push_solid(L, {.kind = kind, .sizes = {}, .children = {a->solid, b->solid}, .placement = {}},
+                    a->pieces + b->pieces + 1);
 }
 int subtract(lua_State* L) {
   return combine(L, Solid::Kind::difference, "each side of '-'");
@@ -257,20 +263,22 @@ int intersect(lua_State* L) {
 }
 
 int translate(lua_State* L) {
-  const auto solid = solid_at(L, 1, "what :translate moves");
+  const NodePointer inner = solid_at(L, 1, "what :translate moves");
   Pose placement;
   if (lua_gettop(L) >= 4)
     placement.position = {number_at(L, 2, "translate: x"), number_at(L, 3, "translate: y"),
                           number_at(L, 4, "translate: z")};
   else
     placement.position = vector_at(L, 2, "translate: the way");
-  return push_solid(L, {.kind = Solid::Kind::placed, .sizes = {}, .children = {solid}, .placement = placement});
+  return push_solid(L, {.kind = Solid::Kind::placed, .sizes = {}, .children = {inner->solid}, .placement = placement},
+                    inner->pieces + 1);
 }
 
 int rotate(lua_State* L) {
-  const auto solid = solid_at(L, 1, "what :rotate turns");
+  const NodePointer inner = solid_at(L, 1, "what :rotate turns");
   const Pose placement{.position = Vector3d::Zero(), .rotation = rotation_at(L, 2, "rotate: the rotation")};
-  return push_solid(L, {.kind = Solid::Kind::placed, .sizes = {}, .children = {solid}, .placement = placement});
+  return push_solid(L, {.kind = Solid::Kind::placed, .sizes = {}, .children = {inner->solid}, .placement = placement},
+                    inner->pieces + 1);
 }
 
 int add_child(lua_State* L) {
@@ -286,6 +294,7 @@ int node_member(lua_State* L) {
   const std::string name = text_at(L, 2, "a node's member");
   lua_getfield(L, lua_upvalueindex(1), name.c_str());
   if (!lua_isnil(L, -1)) return 1;
+  ScriptState::of(L).charge(L, kEventWork);
   ScriptState::of(L).notice(fmt::format("{}: node:{} only draws and is ignored", where(L), name));
   lua_getfield(L, LUA_REGISTRYINDEX, "verisim.drawing");
   return 1;

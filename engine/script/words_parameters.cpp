@@ -10,7 +10,9 @@
 namespace verisim::script {
 namespace {
 
-nlohmann::json to_json(lua_State* L, int index, const std::string& what) {
+constexpr int kNestingMax = 8;  // of lists in a parameter
+
+nlohmann::json to_json(lua_State* L, int index, const std::string& what, int depth = 0) {
   switch (lua_type(L, index)) {
     case LUA_TBOOLEAN:
       return lua_toboolean(L, index) != 0;
@@ -23,11 +25,12 @@ nlohmann::json to_json(lua_State* L, int index, const std::string& what) {
     default:
       raise(L, "{} must be a number, a text, true or false, or a list of these, not {}", what, described(L, index));
   }
+  if (depth == kNestingMax) raise(L, "{} is nested more than {} deep", what, kNestingMax);
   nlohmann::json list = nlohmann::json::array();
   const auto length = static_cast<int>(lua_objlen(L, index));
   for (int i = 1; i <= length; ++i) {
     lua_rawgeti(L, index, i);
-    list.push_back(to_json(L, lua_gettop(L), fmt::format("{}[{}]", what, i)));
+    list.push_back(to_json(L, lua_gettop(L), fmt::format("{}[{}]", what, i), depth + 1));
     lua_pop(L, 1);
   }
   return list;
@@ -146,6 +149,7 @@ int say_outcome(lua_State* L) {
     fields.finish(false);
     if (stop) state.stop();
   }
+  state.charge(L, state.outcome != said ? kEventWork : 1);
   if (state.outcome != said) state.event("outcome", said);
   state.outcome = said;
   return 0;
@@ -157,6 +161,7 @@ int say_measure(lua_State* L) {
   Measure measure{
       .name = text_at(L, 1, "measure: the name"), .value = number_at(L, 2, "measure: the value"), .unit = "1"};
   if (!lua_isnoneornil(L, 3)) measure.unit = text_at(L, 3, "measure: the unit");
+  state.charge(L, 10 + state.measures.size());
   for (Measure& known : state.measures) {
     if (known.name != measure.name) continue;
     if (known.unit != measure.unit)
@@ -170,7 +175,9 @@ int say_measure(lua_State* L) {
 
 // event("passed", "the pin is through"): a line of /events.
 int say_event(lua_State* L) {
-  ScriptState::of(L).event(text_at(L, 1, "event: the kind"), text_at(L, 2, "event: the text"));
+  ScriptState& state = ScriptState::of(L);
+  state.charge(L, kEventWork);
+  state.event(text_at(L, 1, "event: the kind"), text_at(L, 2, "event: the text"));
   return 0;
 }
 

@@ -82,7 +82,8 @@ bool name_taken(const Scene& scene, const std::string& name) {
 
 std::string free_name(const Scene& scene, const std::string& stem) {
   std::string name = stem;
-  for (int i = 2; name_taken(scene, name); ++i) name = fmt::format("{}{}", stem, i);
+  // From the number of bodies on, so that many of one stem are named in one look each.
+  for (std::size_t i = scene.bodies.size() + 1; name_taken(scene, name); ++i) name = fmt::format("{}{}", stem, i);
   return name;
 }
 
@@ -105,6 +106,10 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
     lua_pop(L, 1);
   }
   PlacedParts placed_parts = resolve(nodes, state.inputs);
+  // Parts lie outside Lua's memory: they are paid for as work, so that a loop cannot fill the machine with bodies.
+  std::size_t triangles = 0;
+  for (const Part& part : placed_parts.parts) triangles += part.mesh.triangles.size();
+  state.charge(L, 20'000 + triangles + 10 * state.scene.bodies.size());
   body.parts = std::move(placed_parts.parts);
   body.X_WB = body.X_WB * placed_parts.pose;
   stem = placed_parts.stem;

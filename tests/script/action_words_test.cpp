@@ -106,6 +106,15 @@ TEST(FrameActions, CanBeRemovedFromOutsideAndFromInside) {
             (Texts{"on"}));
 }
 
+TEST(FrameActions, ThatBreedAreStopped) {
+  WrittenScenario written(
+      "local function breed() Actions.addFrameAction(breed) Actions.addFrameAction(breed) Actions.waitSeconds(10) end "
+      "Actions.addFrameAction(breed)");
+  written.run(300);
+  ASSERT_FALSE(written.events("script error").empty());
+  EXPECT_NE(written.events("script error")[0].find("1000 frame actions already"), std::string::npos);
+}
+
 TEST(FrameActions, WorkAfterRequire) {
   EXPECT_EQ(printed("local A = require 'Actions' A.addFrameAction(function() print('runs') end)", 1), (Texts{"runs"}));
 }

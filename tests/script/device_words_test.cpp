@@ -133,6 +133,13 @@ TEST(Grasp, OfADeviceThatWasNeverAddedIsRefused) {
             "pin.lua:1: this device grasps a body but was never added; call addDevice(device) first");
 }
 
+TEST(Filters, AreNotStackedWithoutEnd) {
+  EXPECT_NE(
+      refusal_of("local d = Devices.Hand{ path = {{0, 0, 0}} } for i = 1, 1e5 do d = scaleDevice{ d, scale = 2 } end")
+          .find("100 filters"),
+      std::string::npos);
+}
+
 TEST(AddDevice, RefusesADeviceTwice) {
   EXPECT_NE(
       refusal_of("local d = Devices.Hand{ path = {{0, 0, 0}} } addDevice(d) addDevice(scaleDevice{ d, scale = 2 })")

@@ -63,6 +63,10 @@ TEST(Parameters, ThatAreNoExpressionsOrFailAreRefused) {
   EXPECT_NE(resolved("{clearance = 0.005}", {{"clearance", "0/0"}}).find("must be finite"), std::string::npos);
 }
 
+TEST(Parameters, ThatHoldThemselvesAreRefused) {
+  EXPECT_NE(refusal_of("local t = {} t[1] = t params{a = t}").find("nested more than 8 deep"), std::string::npos);
+}
+
 TEST(Parameters, AreDeclaredInOnePlace) {
   EXPECT_EQ(refusal_of("params{a = 1}\nparams{b = 1}"),
             "pin.lua:2: params was declared at pin.lua:1 already; put all parameters there");

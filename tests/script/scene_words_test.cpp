@@ -162,6 +162,22 @@ TEST(AddObject, RefusesWhatIsWrongWithPlaceAndRemedy) {
   EXPECT_NE(refusal_of("addObject{ 3 }").find("addObject: child 1 must be a node, not 3"), std::string::npos);
 }
 
+// Sharing and nesting make few nodes stand for very many: each of these would fill the machine or its stack.
+TEST(Nodes, ThatMultiplyThemselvesAreRefused) {
+  EXPECT_NE(refusal_of("local s = Solid.box{1, 1, 1} for i = 1, 100 do s = s + s end").find("more than 1000 pieces"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("local s = Solid.box{1, 1, 1} for i = 1, 1e6 do s = s:translate{1, 0, 0} end")
+                .find("more than 1000 pieces"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal_of("local g = Group{} for i = 1, 60 do g = Group{g, g} end addObject{ g }").find("more than 10000 nodes"),
+      std::string::npos);
+  EXPECT_NE(refusal_of("local g = Group{} g:addChild(g) addObject{ g }").find("its own child?"), std::string::npos);
+  EXPECT_NE(refusal_of("for i = 1, 1e6 do addObject{ voxelsize = 0.1, Solid.box{1, 1, 1} } end")
+                .find("without coming to an end"),
+            std::string::npos);
+}
+
 // A cube of 2 units as an OBJ file: 8 corners, 12 triangles, outward.
 constexpr const char* kCube = R"(v -1 -1 -1
 v 1 -1 -1
