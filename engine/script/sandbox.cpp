@@ -158,7 +158,8 @@ std::optional<LuaFailure> Sandbox::load(lua_State* L, const std::string& chunk_n
     return LuaFailure{fmt::format("{}: holds compiled Lua; give the script's text", chunk_name)};
   const std::string source = "@" + chunk_name;
   // A first line "#!…" is for a shell. Kept empty so that line numbers stay true.
-  const std::size_t skipped = content.rfind("#", 0) == 0 ? std::min(content.find('\n'), content.size()) : 0;
+  const std::size_t skipped =
+      !content.empty() && content.front() == '#' ? std::min(content.find('\n'), content.size()) : 0;
   const int status = luaL_loadbuffer(L, content.data() + skipped, content.size() - skipped, source.c_str());
   if (status != 0) return take_failure(L, status);
   return std::nullopt;

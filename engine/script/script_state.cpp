@@ -83,8 +83,11 @@ void ScriptState::finish() {
   name_devices();
   finish_devices();
   bind_devices();
-  for (const auto& [device, body] : grasps)
-    scene.grasps.push_back({.device = at_place(device->place, [&] { return device_index(*device); }), .body = body});
+  for (const auto& grasp : grasps) {
+    const DeviceNode& device = *grasp.first;
+    scene.grasps.push_back(
+        {.device = at_place(device.place, [&] { return device_index(device); }), .body = grasp.second});
+  }
 }
 
 void ScriptState::check_sets() const {

@@ -33,16 +33,15 @@ std::string find_model(lua_State* L, const std::string& given) {
   std::string name = given;
   std::replace(name.begin(), name.end(), '\\', '/');
   std::vector<std::string> places = {name};
-  for (const std::string& folder : state.search_path) places.push_back(folder + "/" + name);
+  for (const std::string& folder : state.search_path) places.push_back(fmt::format("{}/{}", folder, name));
   for (const std::string& place : places) {
     if (readable(place)) {
       if (state.inputs.exists(place)) return place;
       continue;
     }
-    const std::string stem =
-        place.substr(0, place.size() - (lower_extension(place).empty() ? 0 : lower_extension(place).size() + 1));
+    const std::size_t dot = lower_extension(place).empty() ? place.size() : place.find_last_of('.');
     for (const char* extension : kReadable) {
-      const std::string sibling = stem + "." + extension;
+      std::string sibling = fmt::format("{}.{}", place.substr(0, dot), extension);
       if (!state.inputs.exists(sibling)) continue;
       state.notice(
           fmt::format("{}: {} is in a format that cannot be read; {} is read in its place", where(L), given, sibling));
