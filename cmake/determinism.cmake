@@ -25,15 +25,22 @@ function(verisim_core_variants name)
     get_filename_component(compiler_name ${compiler} NAME)
     foreach(level 0 2 3)
       set(variant ${name}_${compiler_name}_O${level})
-      add_executable(${variant} ${sources})
+      if(variant STREQUAL "${name}_g++_O2" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
+        add_executable(${variant} ${ARG_MAIN})  # the build's own libraries are this variant
+      else()
+        add_executable(${variant} ${sources})
+      endif()
       target_link_libraries(${variant} PRIVATE ${ARG_CORE})
-      target_compile_options(${variant} PRIVATE -O${level} -g0)
+      target_compile_options(${variant} PRIVATE -O${level} -g0 -w)  # warnings are the default build's business
       target_precompile_headers(${variant} PRIVATE <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <functional> <map>
                                 <memory> <string> <vector>)  # reading these is most of the time
       set_target_properties(${variant} PROPERTIES
         CXX_COMPILER_LAUNCHER "${PROJECT_SOURCE_DIR}/cmake/compile_with.sh;${compiler}"
         EXPORT_COMPILE_COMMANDS OFF  # the default build's are the ones to lint
         RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/variants)
+      if(level EQUAL 0)  # g++ refuses Highway's AVX-512 gathers unless it optimises
+        target_compile_definitions(${variant} PRIVATE "HWY_DISABLED_TARGETS=(HWY_AVX3|HWY_AVX3_DL)")
+      endif()
       list(APPEND programs $<TARGET_FILE:${variant}>)
     endforeach()
   endforeach()
