@@ -15,8 +15,9 @@ struct Entry {
 };
 /// To add a tracker: a factory in trackers.hpp, a row here.
 constexpr std::array kTrackers = {
-    Entry{"geometric", make_geometric},
-    Entry{"vrpn-compatible", make_vrpn_compatible},
+    Entry{"geometric", make_geometric}, Entry{"vrpn-compatible", make_vrpn_compatible},
+    Entry{"three-led", make_three_led}, Entry{"scaat", make_scaat},
+    Entry{"stereo", make_stereo},
 };
 
 void require_positive(const char* what, double value, double max) {

@@ -1,0 +1,24 @@
+// Finding a head of three or four LEDs in one image without knowing where it was.
+#pragma once
+
+#include "engine/wii/assignment.hpp"
+#include "engine/wii/pose_solver.hpp"
+
+namespace verisim::wii {
+
+struct Acquired {
+  SolvedPose solved;
+  Assignment blob = {-1, -1, -1, -1};
+};
+
+/// Tries every way to name the blobs, from several turns of the head, and takes the pose that fits best and is most
+/// upright. Needs three LEDs in view (the first three, if the head has four and only three blobs are seen). At most
+/// 24 x 3 solutions; only while no head is followed.
+[[nodiscard]] Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, const Pinhole& pinhole,
+                                    const PoseSolver& solver, const Upright& upright);
+
+/// The sightings that an assignment means. Returns how many.
+int sightings_of(const Reading& reading, const LedLayout& leds, const Assignment& assignment, int remote,
+                 std::span<Sighting> sightings);
+
+}  // namespace verisim::wii

@@ -1,0 +1,194 @@
+// The trackers that fit a whole pose to many sightings: three LEDs seen by one remote, or any seen by two.
+#include <cmath>
+
+#include "engine/base/error.hpp"
+#include "engine/wii/acquisition.hpp"
+#include "engine/wii/tracker_base.hpp"
+#include "engine/wii/trackers.hpp"
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kMemory = 0.25;          // s that a lost head is looked for where it was
+constexpr double kOtherRemoteMax = 0.03;  // s: three reports; an older image of the other remote is no use
+constexpr double kBothSilent = 0.05;      // s without the first remote after which the second reports
+constexpr double kGate = 60;              // pixel
+constexpr double kGateGrowth = 1500;      // pixel per s without a report
+constexpr double kTurnRate = 1;           // rad/s: how fast a yaw that is no longer seen becomes unknown
+constexpr double kRollSigma = 0.5;        // rad
+constexpr double kPriorWidth = 2;         // times the settings' sigmas: where yaw is seen, belief should hardly count
+
+class MultiPoint final : public TrackerBase {
+ public:
+  MultiPoint(const TrackerSettings& settings, std::string_view name, int remotes)
+      : TrackerBase(settings),
+        name_(name),
+        remotes_(remotes),
+        solver_(settings),
+        followers_{PairFollower(settings.leds, pinhole()), PairFollower(settings.leds, pinhole())} {}
+
+  [[nodiscard]] std::string_view name() const override { return name_; }
+
+ private:
+  struct View {
+    Reading reading;
+    double t = -std::numeric_limits<double>::infinity();
+  };
+
+  void estimate(double t, double /*dt*/, const Reading& reading, int remote, Estimate& result) override {
+    if (remote >= remotes_) return;
+    views_[static_cast<std::size_t>(remote)] = {reading, t};
+    if (!reports(t, remote) || !gravity(0).known()) return;
+    upright_ = believe();
+    found_ = {};
+    if (followed_ && t - t_followed_ <= kMemory) {
+      found_ = follow(t);
+    } else {
+      seen_fully_ = true;
+      found_ =
+          remotes_ == 1 ? acquire_head(reading, settings(), pinhole(), solver_, upright_).solved : acquire_pairs(t);
+    }
+    if (!found_.found) return;
+    level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
+    result.usable = result.known = true;
+  }
+
+  [[nodiscard]] bool reports(double t, int remote) const override {
+    if (remotes_ == 1 || remote == 0) return remote == 0;
+    return t - views_[0].t > kBothSilent;
+  }
+
+  /// Yaw and pitch are believed to be near zero …
+  [[nodiscard]] Upright believe() const {
+    Upright u;
+    u.C_LR = gravity(0).C_LR();
+    u.sigma_x = kPriorWidth * settings().yaw_sigma;
+    u.sigma_y = kPriorWidth * settings().pitch_sigma;
+    u.sigma_roll = kRollSigma;
+    return u;
+  }
+  /// … and, when they were seen a moment ago and now are not, near what they were.
+  void believe_last(double t, Upright& u) const {
+    const Matrix3d R_LH = u.C_LR * X_RH_.rotation.toRotationMatrix();
+    const double drift = kTurnRate * (t - t_full_);
+    u.row_x = R_LH(2, 0);
+    u.row_y = R_LH(2, 1);
+    u.sigma_x = std::min(u.sigma_x, settings().yaw_sigma / 4 + drift);
+    u.sigma_y = std::min(u.sigma_y, settings().pitch_sigma / 4 + drift);
+  }
+
+  [[nodiscard]] SolvedPose follow(double t) {
+    std::array<Sighting, kSightingsMax> sightings;
+    int n = 0;
+    for (int remote = 0; remote < remotes_; ++remote)
+      n += follow_in(t, remote, std::span(sightings).subspan(static_cast<std::size_t>(n)));
+    if (n < 2) return {};
+    seen_fully_ = n >= 3;
+    if (!seen_fully_) believe_last(t, upright_);
+    return solver_.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright_, predicted(t));
+  }
+
+  int follow_in(double t, int remote, std::span<Sighting> sightings) const {
+    const View& view = views_[static_cast<std::size_t>(remote)];
+    if (t - view.t > kOtherRemoteMax) return 0;
+    std::array<Eigen::Vector2d, kLedsMax> then;  // where the LEDs were when this image was taken
+    std::array<Eigen::Vector2d, kLedsMax> now;
+    const auto leds = static_cast<std::size_t>(settings().leds.count);
+    for (std::size_t led = 0; led < leds; ++led) {
+      const Vector3d& p_H = settings().leds.p_H[led];
+      if (!solver_.project(predicted(view.t), p_H, remote, then[led])) return 0;
+      if (!solver_.project(predicted(t), p_H, remote, now[led])) return 0;
+    }
+    const double gate = kGate + kGateGrowth * (t - t_followed_);
+    const Assignment blobs = nearest_assignment(view.reading, std::span(then).first(leds), gate);
+    int n = 0;
+    for (std::size_t led = 0; led < leds; ++led) {
+      if (blobs[led] < 0) continue;
+      const Blob& b = view.reading.blobs[static_cast<std::size_t>(blobs[led])];
+      const Eigen::Vector2d moved = now[led] - then[led];
+      sightings[static_cast<std::size_t>(n++)] = {settings().leds.p_H[led], b.u + moved.x(), b.v + moved.y(), remote};
+    }
+    return n;
+  }
+
+  /// Each remote finds the pair by itself; the first that does says where to start.
+  [[nodiscard]] SolvedPose acquire_pairs(double t) {
+    std::array<Sighting, kSightingsMax> sightings;
+    int n = 0;
+    Pose start;
+    for (int remote = 0; remote < remotes_; ++remote) {
+      const auto i = static_cast<std::size_t>(remote);
+      if (t - views_[i].t > kOtherRemoteMax || !gravity(remote).known()) continue;
+      followers_[i].forget();
+      const PairFollower::Match match = followers_[i].match(t, views_[i].reading, gravity(remote).C_LR());
+      if (!match.found()) continue;
+      const Assignment blobs = {match.blob[0], match.blob[1], -1, -1};
+      if (n == 0) start = in_first(match.pose, remote);
+      n += sightings_of(views_[i].reading, settings().leds, blobs, remote,
+                        std::span(sightings).subspan(static_cast<std::size_t>(n)));
+    }
+    if (n < 2) return {};
+    seen_fully_ = n >= 3;
+    return solver_.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright_, start);
+  }
+
+  [[nodiscard]] Pose in_first(const TwoPointPose& pose, int remote) const {
+    const Quaterniond C_RL = Quaterniond(gravity(remote).C_LR()).conjugate();
+    const Pose X_iH{C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()};
+    return remote == 0 ? X_iH : settings().X_R1R2 * X_iH;
+  }
+
+  [[nodiscard]] Pose predicted(double t) const {
+    return {X_RH_.position + (t - t_followed_) * velocity_R_, X_RH_.rotation};
+  }
+
+  void admitted(double t, bool valid) override {
+    if (!valid) return;
+    const double dt = t - t_followed_;
+    const bool continued = followed_ && dt <= kMemory;
+    if (!continued)
+      velocity_R_.setZero();
+    else if (dt > 1e-4)
+      velocity_R_ += 0.5 * ((found_.X_RH.position - X_RH_.position) / dt - velocity_R_);
+    velocity_R_ *= std::min(1.0, kSpeedMax / std::max(velocity_R_.norm(), 1e-9));
+    X_RH_ = found_.X_RH;
+    t_followed_ = t;
+    followed_ = true;
+    if (seen_fully_) t_full_ = t;
+  }
+
+  void restart() override {
+    followed_ = false;
+    for (View& view : views_) view.t = -std::numeric_limits<double>::infinity();
+  }
+
+  std::string_view name_;
+  int remotes_;
+  PoseSolver solver_;
+  std::array<PairFollower, 2> followers_;
+  std::array<View, 2> views_;
+  Upright upright_;
+  SolvedPose found_;
+  bool seen_fully_ = false;  ///< this report's sightings determine yaw
+  bool followed_ = false;
+  double t_followed_ = 0;
+  double t_full_ = 0;
+  Pose X_RH_;  ///< followed pose
+  Vector3d velocity_R_ = Vector3d::Zero();
+};
+
+}  // namespace
+
+std::unique_ptr<Tracker> make_three_led(const TrackerSettings& settings) {
+  if (settings.leds.count < 3)
+    fail(ErrorKind::input,
+         "tracker three-led: {} LEDs are described but it needs three; add a third to '# leds:', or use geometric",
+         settings.leds.count);
+  return std::make_unique<MultiPoint>(settings, "three-led", 1);
+}
+
+std::unique_ptr<Tracker> make_stereo(const TrackerSettings& settings) {
+  return std::make_unique<MultiPoint>(settings, "stereo", 2);
+}
+
+}  // namespace verisim::wii

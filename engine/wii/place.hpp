@@ -1,0 +1,42 @@
+// Where to put the remote: the place and aim that see most of a set of head poses, and see them best
+// (dissertation section 2.9: "a tool that suggests an optimal position for the Wii Remote").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/wii/tracker.hpp"
+
+namespace verisim::wii {
+
+struct PlaceOptions {
+  std::vector<Pose> heads;                 ///< X_WH, recorded or modelled; W with +y up
+  Vector3d room_min = {-0.5, -0.5, -0.5};  ///< where the remote may stand, m, W
+  Vector3d room_max = {0.5, 0.5, 0.5};
+  TrackerSettings tracker;                    ///< LEDs, field of view and pixel noise
+  double emission_half_angle = 60 * kDegree;  ///< an LED turned further away is not counted as seen
+};
+
+struct Placement {
+  Pose X_WR;           ///< without roll
+  double heading = 0;  ///< rad about +y; 0 looks along +z of W
+  double pitch = 0;    ///< rad, lens up
+  double covered = 0;  ///< share of the heads whose first two LEDs are both in view
+  double error = 0;    ///< m, expected rms error over the covered heads (yaw left out)
+};
+
+/// What a given place is worth. Cost: two projections per head.
+[[nodiscard]] Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double heading, double pitch);
+
+/// The best place: most heads covered; among equals (to a tenth of a percent) the least expected error. A 5 x 5 x 5
+/// grid of places aimed at the middle of the heads, then the best eight improved along each coordinate by steps that
+/// halve down to 1 mm and 0.05 degrees. Deterministic. Error(input) for no heads, an empty room or a head that is not
+/// finite.
+[[nodiscard]] Placement best_place(const PlaceOptions& options);
+
+/// Heads of someone at work at `middle` who faces `toward`: normal about it with `spread` [m] per axis, turned as heads
+/// turn (the settings' yaw and pitch sigma, half of it as roll).
+[[nodiscard]] std::vector<Pose> modelled_heads(const Vector3d& middle, const Vector3d& toward, const Vector3d& spread,
+                                               int count, std::uint64_t seed);
+
+}  // namespace verisim::wii

@@ -1,0 +1,112 @@
+#include "engine/wii/pose_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace verisim::wii {
+namespace {
+
+constexpr int kSteps = 8;
+constexpr double kConverged = 1e-7;  // m and rad: far below a hundredth of a pixel
+constexpr double kDepthMin = 0.05;   // m, in front of the lens
+constexpr double kStepMax = 0.7;     // m or rad in one step: the tangent is not trusted further
+
+}  // namespace
+
+/// J^T W J, J^T W r and r^T W r over (position, left rotation vector) in R.
+struct PoseSolver::Normal {
+  Matrix6d A = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  double cost = 0;
+
+  void add(const Vector6d& row, double residual, double weight) {
+    A.noalias() += (weight * row) * row.transpose();
+    b += weight * residual * row;
+    cost += weight * residual * residual;
+  }
+};
+
+PoseSolver::PoseSolver(const TrackerSettings& settings)
+    : pinhole_(settings.fov), weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)) {
+  const Pose X_R2R1 = settings.X_R1R2.inverse();
+  R_iR_ = {Matrix3d::Identity(), X_R2R1.rotation.toRotationMatrix()};
+  p_iR_ = {Vector3d::Zero(), X_R2R1.position};
+}
+
+bool PoseSolver::project(const Pose& X_RH, const Vector3d& p_H, int remote, Eigen::Vector2d& pixel) const {
+  const auto i = static_cast<std::size_t>(remote);
+  const Vector3d p = R_iR_[i] * (X_RH * p_H) + p_iR_[i];
+  if (!(p.z() > kDepthMin)) return false;
+  pixel = pinhole_.project(p);
+  return true;
+}
+
+bool PoseSolver::accumulate(std::span<const Sighting> sightings, const Upright& upright, const Pose& X_RH,
+                            Normal& normal) const {
+  const Matrix3d R_RH = X_RH.rotation.toRotationMatrix();
+  for (const Sighting& s : sightings) {
+    const auto i = static_cast<std::size_t>(s.remote);
+    const Vector3d arm_R = R_RH * s.p_H;
+    const Vector3d p = R_iR_[i] * (arm_R + X_RH.position) + p_iR_[i];
+    if (!(p.z() > kDepthMin)) return false;
+    const double a = p.x() / p.z();
+    const double b = p.y() / p.z();
+    const auto add = [&](const Vector3d& gradient_i, double residual) {
+      const Vector3d gradient_R = R_iR_[i].transpose() * gradient_i;
+      Vector6d row;
+      row << gradient_R, arm_R.cross(gradient_R);
+      normal.add(row, residual, weight_);
+    };
+    add(pinhole_.fx / p.z() * Vector3d(1, 0, -a), s.u - (kWidth / 2 + pinhole_.fx * a));
+    add(pinhole_.fy / p.z() * Vector3d(0, 1, -b), s.v - (kHeight / 2 + pinhole_.fy * b));
+  }
+  // Entry (k, j) of R_LH moves with a rotation vector w as w . (column_j x e_k), both in L.
+  const Matrix3d R_LH = upright.C_LR * R_RH;
+  const auto add_entry = [&](int k, int j, double believed, double sigma) {
+    const Vector3d gradient_L = R_LH.col(j).cross(Vector3d::Unit(k));
+    Vector6d row;
+    row << Vector3d::Zero(), upright.C_LR.transpose() * gradient_L;
+    normal.add(row, believed - R_LH(k, j), 1 / (sigma * sigma));
+  };
+  add_entry(2, 0, upright.row_x, upright.sigma_x);
+  add_entry(2, 1, upright.row_y, upright.sigma_y);
+  add_entry(1, 0, 0, upright.sigma_roll);
+  return true;
+}
+
+SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright& upright, const Pose& start) const {
+  SolvedPose solved;
+  solved.X_RH = start;
+  for (int step = 0; step < kSteps; ++step) {
+    Normal normal;
+    if (!accumulate(sightings, upright, solved.X_RH, normal)) return solved;
+    const Eigen::LLT<Matrix6d> factor(normal.A);
+    if (factor.info() != Eigen::Success) return solved;
+    Vector6d move = factor.solve(normal.b);
+    const double length = move.cwiseAbs().maxCoeff();
+    if (!std::isfinite(length)) return solved;
+    solved.cost = normal.cost;
+    if (length < kConverged) {
+      solved.covariance = factor.solve(Matrix6d::Identity());
+      solved.found = true;
+      return solved;
+    }
+    if (length > kStepMax) move *= kStepMax / length;
+    solved.X_RH.position += move.head<3>();
+    solved.X_RH.rotation = (rotation_from_vector(move.tail<3>()) * solved.X_RH.rotation).normalized();
+  }
+  return solved;
+}
+
+void level(const SolvedPose& solved, const Matrix3d& C_LR, double tilt_sigma, Pose& X_LH, Matrix6d& covariance) {
+  X_LH.position = C_LR * solved.X_RH.position;
+  X_LH.rotation = (Quaterniond(C_LR) * solved.X_RH.rotation).normalized();
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = C_LR;
+  turn.bottomRightCorner<3, 3>() = C_LR;
+  Eigen::Matrix<double, 6, 3> lever;  // of the tilt vector on position and rotation
+  lever << -skew(X_LH.position), Matrix3d::Identity();
+  covariance = turn * solved.covariance * turn.transpose() + tilt_sigma * tilt_sigma * lever * lever.transpose();
+}
+
+}  // namespace verisim::wii

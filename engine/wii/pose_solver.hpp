@@ -1,0 +1,64 @@
+// The head pose that fits any number of sightings best, from one remote or two: Gauss-Newton on pixels, with what is
+// known of heads (they are nearly upright) as further measurements, so that what the sightings leave open is not left
+// open.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "engine/wii/tracker.hpp"
+
+namespace verisim::wii {
+
+/// One LED in the image of one remote.
+struct Sighting {
+  Vector3d p_H = Vector3d::Zero();  ///< of the LED [m]
+  double u = 0;                     ///< pixel
+  double v = 0;                     ///< pixel
+  int remote = 0;
+};
+
+inline constexpr int kSightingsMax = 2 * kLedsMax;
+
+/// What is believed of the head before looking. The third row of R_LH is (-sin yaw, cos yaw sin pitch, …) for
+/// R_LH = Rz(roll) Ry(yaw) Rx(pitch): its first two entries are believed, with these standard deviations.
+struct Upright {
+  Matrix3d C_LR = Matrix3d::Identity();  ///< of the first remote
+  double row_x = 0;                      ///< believed R_LH(2,0)
+  double row_y = 0;                      ///< believed R_LH(2,1)
+  double sigma_x = 1;                    ///< rad, of yaw
+  double sigma_y = 1;                    ///< rad, of pitch
+  double sigma_roll = 1;                 ///< rad, of R_LH(1,0) about 0
+};
+
+struct SolvedPose {
+  Pose X_RH;            ///< in coordinates of the first remote
+  Matrix6d covariance;  ///< of position and rotation vector in R [m^2, rad^2]
+  double cost = 0;      ///< sum of squared residuals over their variances
+  bool found = false;   ///< converged with every LED in front of its remote
+};
+
+class PoseSolver {
+ public:
+  explicit PoseSolver(const TrackerSettings& settings);
+
+  /// From `start`, at most 8 steps, each about 100 flops per sighting and a 6 x 6 factorisation. No allocation.
+  [[nodiscard]] SolvedPose solve(std::span<const Sighting> sightings, const Upright& upright, const Pose& start) const;
+  /// The pixel at which a remote sees a point of the head; false if it lies behind the lens.
+  [[nodiscard]] bool project(const Pose& X_RH, const Vector3d& p_H, int remote, Eigen::Vector2d& pixel) const;
+
+ private:
+  struct Normal;
+  [[nodiscard]] bool accumulate(std::span<const Sighting> sightings, const Upright& upright, const Pose& X_RH,
+                                Normal& normal) const;
+
+  Pinhole pinhole_;
+  double weight_;  ///< 1 / pixel variance
+  std::array<Matrix3d, 2> R_iR_;
+  std::array<Vector3d, 2> p_iR_;
+};
+
+/// X_LH and its covariance in L from a pose in R: tilt of `tilt_sigma` turns everything about the pinhole.
+void level(const SolvedPose& solved, const Matrix3d& C_LR, double tilt_sigma, Pose& X_LH, Matrix6d& covariance);
+
+}  // namespace verisim::wii

@@ -1,0 +1,225 @@
+// scaat: every pixel coordinate, blob size and belief about heads corrects the filter by itself, so that one LED alone
+// still helps and none at all only lets the covariance grow. The accelerometer levels the state and says what "upright"
+// is.
+#include <cmath>
+
+#include "engine/wii/acquisition.hpp"
+#include "engine/wii/head_filter.hpp"
+#include "engine/wii/tracker_base.hpp"
+#include "engine/wii/trackers.hpp"
+#include "engine/wii/two_led_covariance.hpp"
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kGateSigmas = 5;
+constexpr double kPixelGate = 15;  // pixel, beside what the state's uncertainty allows
+constexpr double kPixelGateMax = 200;
+constexpr double kCoastMax = 0.1;         // s without any LED that a prediction still counts as valid
+constexpr double kForgetAfter = 1;        // s without any LED after which nothing is predicted any more
+constexpr double kSigmaMax = 0.15;        // m: less sure than this is not valid
+constexpr double kUprightTime = 1;        // s: beliefs about heads pull with this time constant where LEDs decide
+constexpr double kPinned = 1 * kDegree;   // two LEDs: yaw and pitch are held, not estimated; see report()
+constexpr double kOverturned = -0.2;      // R_LH(1,1): nobody's head
+constexpr int kPatience = 3;              // reports in which visible blobs do not fit before the head is sought anew
+constexpr double kSizeSigma = 0.5;        // of a blob's size, which is a whole number
+constexpr double kSizeRepeats = 10;       // reports that show the same rounding error
+constexpr double kSizeLearning = 0.02;    // per report: the LEDs' brightness changes with their cells, slowly
+constexpr double kRoundingPixels = 0.29;  // 1 / sqrt(12): a head at rest does not average its rounding errors away
+
+class Scaat final : public TrackerBase {
+ public:
+  explicit Scaat(const TrackerSettings& settings)
+      : TrackerBase(settings),
+        solver_(settings),
+        follower_(settings.leds, pinhole()),
+        spacing_((settings.leds.p_H[0] - settings.leds.p_H[1]).norm()),
+        pixel_variance_(settings.pixel_sigma * settings.pixel_sigma) {}
+
+  [[nodiscard]] std::string_view name() const override { return "scaat"; }
+
+ private:
+  void estimate(double t, double dt, const Reading& reading, int remote, Estimate& result) override {
+    if (remote != 0) return;
+    reading_ = reading;
+    pair_ = {};
+    const Matrix3d& C_LR = gravity(0).C_LR();
+    if (running_ && t - t_seen_ > kForgetAfter) running_ = false;
+    int seen = 0;
+    if (running_) {
+      filter_.predict(dt, misses_ == 0);
+      seen = correct_with(reading, C_LR, dt);
+      misses_ = seen > 0 ? 0 : misses_ + 1;
+    }
+    const bool lost = !running_ || overturned(C_LR) ||
+                      (seen < 2 && reading.blob_count >= 2 && ++strange_ >= kPatience) ||
+                      (seen == 0 && reading.blob_count >= 2 && t - t_seen_ > kCoastMax);
+    if (seen >= 2) strange_ = 0;
+    if (lost && acquire(t, reading, C_LR)) seen = settings().leds.count;
+    if (!running_) return;
+    if (seen > 0) t_seen_ = t;
+    report(t, seen, C_LR, result);
+  }
+
+  // ---- one measurement at a time
+
+  /// Returns how many LEDs were used.
+  int correct_with(const Reading& reading, const Matrix3d& C_LR, double dt) {
+    const auto leds = static_cast<std::size_t>(settings().leds.count);
+    std::array<Eigen::Vector2d, kLedsMax> expected;
+    for (std::size_t led = 0; led < leds; ++led)
+      if (!solver_.project(filter_.X_RH(), settings().leds.p_H[led], 0, expected[led])) return 0;
+    const double spread = pinhole().fx * std::sqrt(filter_.position_variance()) / filter_.X_RH().position.z();
+    const Assignment blobs =
+        nearest_assignment(reading, std::span(expected).first(leds), std::min(kPixelGateMax, kPixelGate + 3 * spread));
+    int seen = 0;
+    int alone = -1;
+    for (std::size_t led = 0; led < leds; ++led) {
+      if (blobs[led] < 0) continue;
+      const Blob& blob = reading.blobs[static_cast<std::size_t>(blobs[led])];
+      if (!correct_pixel(settings().leds.p_H[led], blob)) continue;
+      ++seen;
+      alone = blobs[led];
+      if (led < 2) pair_.blob[led] = blobs[led];
+    }
+    if (seen == 1) correct_size(reading.blobs[static_cast<std::size_t>(alone)]);
+    if (seen >= 2) learn_size(reading.blobs[static_cast<std::size_t>(alone)]);
+    correct_upright(C_LR, dt);
+    return seen;
+  }
+
+  bool correct_pixel(const Vector3d& p_H, const Blob& blob) {
+    const auto axis = [&](bool horizontal) {
+      const Vector3d arm = filter_.R_RH() * p_H;
+      const Vector3d p = filter_.X_RH().position + arm;
+      if (!(p.z() > 0)) return false;
+      const double f = horizontal ? pinhole().fx : pinhole().fy;
+      const double slope = (horizontal ? p.x() : p.y()) / p.z();
+      const Vector3d g = f / p.z() * (horizontal ? Vector3d(1, 0, -slope) : Vector3d(0, 1, -slope));
+      const double measured = horizontal ? blob.u - kWidth / 2 : blob.v - kHeight / 2;
+      return filter_.correct(g, arm.cross(g), measured - f * slope, pixel_variance_, kGateSigmas);
+    };
+    const bool u = axis(true);
+    const bool v = axis(false);
+    return u && v;
+  }
+
+  /// A blob's size falls with distance: coarse, but all that one LED says of depth.
+  void correct_size(const Blob& blob) {
+    const Vector3d& p = filter_.X_RH().position;
+    const double distance = p.norm();
+    const double size = size_at_1m_ / distance;
+    filter_.correct(-size / (distance * distance) * p, Vector3d::Zero(), blob.size - size,
+                    kSizeSigma * kSizeSigma * kSizeRepeats, kGateSigmas);
+  }
+  void learn_size(const Blob& blob) {
+    size_at_1m_ += kSizeLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
+  }
+
+  /// Entries (2,0) and (2,1) of R_LH are -yaw and pitch. Two LEDs see neither: both are held at zero and accounted for
+  /// in the report. Three see both: belief only pulls gently where they are not seen.
+  void correct_upright(const Matrix3d& C_LR, double dt) {
+    const bool two = settings().leds.count == 2;
+    const double repeats = kUprightTime / std::max(dt, 1e-6);
+    const auto variance = [&](double sigma) { return two ? kPinned * kPinned : 4 * sigma * sigma * repeats; };
+    for (const int j : {0, 1}) {
+      const Vector3d column_L = C_LR * filter_.R_RH().col(j);
+      const Vector3d g = C_LR.transpose() * column_L.cross(Vector3d::UnitZ());
+      const double sigma = j == 0 ? settings().yaw_sigma : settings().pitch_sigma;
+      filter_.correct(Vector3d::Zero(), g, -column_L.z(), variance(sigma), std::numeric_limits<double>::infinity());
+    }
+  }
+
+  // ---- finding the head
+
+  [[nodiscard]] bool overturned(const Matrix3d& C_LR) const {
+    return (C_LR.row(1) * filter_.R_RH().col(1)).value() < kOverturned;
+  }
+
+  bool acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
+    Pose X_RH;
+    Matrix6d covariance_R;
+    if (settings().leds.count == 2) {
+      const PairFollower::Match match = follower_.match(t, reading, C_LR);
+      if (!match.found()) return false;
+      const TwoPointPose& pose = match.pose;
+      const Quaterniond C_RL = Quaterniond(C_LR).conjugate();
+      X_RH = {C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()};
+      TrackerSettings held = settings();
+      held.yaw_sigma = held.pitch_sigma = kPinned;
+      const Matrix6d c = two_led_covariance(held, pinhole(), spacing_, pose.p_L, pose.cos_roll, pose.sin_roll);
+      Matrix6d turn = Matrix6d::Zero();
+      turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = C_LR.transpose();
+      covariance_R = turn * c * turn.transpose();
+    } else {
+      Upright upright;
+      upright.C_LR = C_LR;
+      upright.sigma_x = 2 * settings().yaw_sigma;
+      upright.sigma_y = 2 * settings().pitch_sigma;
+      upright.sigma_roll = 0.5;
+      const Acquired acquired = acquire_head(reading, settings(), pinhole(), solver_, upright);
+      if (!acquired.solved.found) return false;
+      X_RH = acquired.solved.X_RH;
+      covariance_R = acquired.solved.covariance;
+    }
+    filter_.start(X_RH, covariance_R);
+    running_ = true;
+    misses_ = strange_ = 0;
+    return true;
+  }
+
+  // ---- what is said
+
+  void report(double t, int seen, const Matrix3d& C_LR, Estimate& result) {
+    SolvedPose state;
+    state.X_RH = filter_.X_RH();
+    state.covariance = filter_.covariance();
+    level(state, C_LR, settings().gravity_sigma, result.pose, result.covariance);
+    result.covariance += unaveraged(result.pose);
+    result.known = true;
+    result.usable = (seen > 0 || t - t_seen_ <= kCoastMax) &&
+                    result.covariance.diagonal().head<3>().maxCoeff() < kSigmaMax * kSigmaMax &&
+                    filter_.X_RH().position.z() > 0;
+  }
+
+  /// What the filter must not average away: rounding errors that stand still with the head and, with two LEDs, the yaw
+  /// and pitch that it holds at zero.
+  [[nodiscard]] Matrix6d unaveraged(const Pose& X_LH) const {
+    TrackerSettings constant = settings();
+    constant.pixel_sigma = kRoundingPixels;
+    if (settings().leds.count > 2) constant.yaw_sigma = constant.pitch_sigma = 1e-3;
+    const Vector3d x_L = X_LH.rotation * Vector3d::UnitX();
+    const double across = std::max(std::hypot(x_L.x(), x_L.y()), 1e-3);
+    return two_led_covariance(constant, pinhole(), spacing_, X_LH.position, x_L.x() / across, x_L.y() / across);
+  }
+
+  /// Tells the finder where the pair was and what else was in the image: lamps, should the head be lost.
+  void admitted(double t, bool valid) override {
+    if (valid && pair_.blob[0] >= 0 && pair_.blob[1] >= 0) follower_.follow(t, reading_, pair_);
+  }
+  void restart() override {
+    running_ = false;
+    follower_.forget();
+  }
+
+  PoseSolver solver_;
+  PairFollower follower_;  ///< finds two LEDs; the filter itself follows them
+  HeadFilter filter_;
+  Reading reading_;
+  PairFollower::Match pair_;  ///< this report's blobs of the first two LEDs
+  double spacing_;
+  double pixel_variance_;
+  bool running_ = false;
+  double t_seen_ = 0;
+  int misses_ = 0;   ///< reports in a row without any LED
+  int strange_ = 0;  ///< reports in a row whose blobs do not fit
+  double size_at_1m_ = 4;
+};
+
+}  // namespace
+
+std::unique_ptr<Tracker> make_scaat(const TrackerSettings& settings) {
+  return std::make_unique<Scaat>(settings);
+}
+
+}  // namespace verisim::wii

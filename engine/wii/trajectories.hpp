@@ -1,0 +1,44 @@
+// Motions of a head, and of the remote that watches it, on which trackers are judged. Each is a closed form of time
+// with the sensor events (outages, slot exchanges) that belong to it; none depends on a tracker or a sensor setting.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/wii/virtual_remote.hpp"
+
+namespace verisim::wii {
+
+struct Trajectory {
+  std::string name;
+  std::string what;      ///< one line for tables and help
+  double duration = 10;  ///< s
+  std::function<Situation(double)> at;
+  std::vector<Outage> outages;
+  std::vector<SlotExchange> exchanges;
+};
+
+/// The remote in W: at the origin of W, its lens towards +z, pitched (lens up) and rolled (its left side up), without
+/// heading, so that L has the axes of W.
+[[nodiscard]] Pose tilted_remote(double pitch, double roll);
+
+/// R_LH = Rz(roll) Ry(yaw) Rx(pitch): the order of the third row in PoseSolver's belief.
+[[nodiscard]] Quaterniond head_rotation(double yaw, double pitch, double roll);
+
+/// A sum of sines: amplitude [m or rad] and frequency [Hz] of each, phase [rad].
+struct Sine {
+  double amplitude;
+  double frequency;
+  double phase;
+};
+[[nodiscard]] double sum_of_sines(std::span<const Sine> sines, double t);
+
+/// static, grid, sweep-x, sweep-z, natural, natural-yaw, edges, dropout-one, dropout-both, swap, upside-down, tilted,
+/// moving-remote.
+[[nodiscard]] const std::vector<Trajectory>& trajectories();
+/// Error(input) for a name that is not one of them.
+[[nodiscard]] const Trajectory& trajectory(std::string_view name);
+
+}  // namespace verisim::wii

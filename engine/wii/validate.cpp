@@ -1,0 +1,177 @@
+#include "engine/wii/validate.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "engine/base/error.hpp"
+#include "engine/wii/validation_figures.hpp"
+
+namespace verisim::wii {
+namespace {
+
+constexpr double kSecondRemoteSide = 0.5;  // m
+constexpr int kTimedBlock = 50;            // updates per clock reading: a reading costs as much as an update
+
+std::vector<SensorCase> make_sensor_cases() {
+  RemoteSettings noisy;
+  noisy.pixel_noise = 0.3;
+
+  RemoteSettings wiimote = noisy;
+  wiimote.subpixel_error = 0.1;
+  wiimote.half_power_angle = 30 * kDegree;
+  wiimote.intensity_min = 0.02;
+  wiimote.balls = {{.centre = {0, 0, 0.11}, .radius = 0.09, .on_head = true}};
+  wiimote.slot_rule = SlotRule::first_free;
+  wiimote.accelerometer_bits = 10;
+  wiimote.accelerometer_noise = 0.005;
+  wiimote.accelerometer_limit = 3.6;
+  wiimote.jitter = 0.1;
+  wiimote.loss = 0.01;
+
+  RemoteSettings low_sensitivity = wiimote;
+  low_sensitivity.subpixels = 4;
+  low_sensitivity.accelerometer_bits = 8;
+
+  RemoteSettings low_battery = wiimote;
+  low_battery.battery = 0.15;
+  low_battery.intensity_min = 0.05;
+
+  RemoteSettings lamp = noisy;
+  lamp.slot_rule = SlotRule::first_free;
+  lamp.lamps = {{.p_W = {0.35, 0.3, 1.6}, .begin = 1}};
+  return {
+      {"ideal", "exact 43 x 32 degree pinhole, whole pixels", {}},
+      {"noisy", "ideal with 0.3 pixel of noise", noisy},
+      {"wiimote", "noisy, 10 bit accelerometer, emission cones, slots reordered, jitter, 1 % of reports lost", wiimote},
+      {"low-sensitivity", "wiimote with half of the subpixels and 8 bit accelerometer", low_sensitivity},
+      {"low-battery", "wiimote with LEDs at 15 % of their power", low_battery},
+      {"lamp", "noisy with a lamp in view from 1 s on", lamp},
+  };
+}
+
+/// What a tracker's name in the options means.
+struct Contender {
+  std::string base;
+  bool triangle = false;
+};
+Contender contender(const std::string& name) {
+  const bool three = name.size() > 2 && name.ends_with("/3");
+  const std::string base = three ? name.substr(0, name.size() - 2) : name;
+  return {base, three || base == "three-led"};
+}
+
+/// The second remote of stereo, in coordinates of the first.
+Pose second_remote() {
+  return {{kSecondRemoteSide, 0, 0}, rotation_from_vector({0, -pinned::atan2(kSecondRemoteSide, 1.2), 0})};
+}
+
+RemoteSettings sensor_settings(const SensorCase& sensor, const Trajectory& path, const LedLayout& leds) {
+  RemoteSettings s = sensor.settings;
+  s.leds.clear();
+  for (int i = 0; i < leds.count; ++i) s.leds.push_back(Led{leds.p_H[static_cast<std::size_t>(i)]});
+  s.outages = path.outages;
+  s.exchanges = path.exchanges;
+  return s;
+}
+
+/// The whole run as the trackers will see it, so that only they are timed.
+struct Sensed {
+  SensedReport report;
+  int remote = 0;
+};
+std::vector<Sensed> sense_all(const RemoteSettings& settings, const Trajectory& path, bool stereo, std::uint64_t seed) {
+  VirtualRemote first(settings, seed, path.name + "/first");
+  VirtualRemote second(settings, seed, path.name + "/second");
+  std::vector<Sensed> all;
+  const auto count = static_cast<std::uint64_t>(path.duration * settings.rate);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    if (stereo) {
+      Situation s = path.at(second.report_time(k));
+      s.X_WR = s.X_WR * second_remote();
+      const SensedReport report = second.sense(k, s);
+      if (!second.lost(k)) all.push_back({report, 1});
+    }
+    const SensedReport report = first.sense(k, path.at(first.report_time(k)));
+    if (!first.lost(k)) all.push_back({report, 0});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Sensed& a, const Sensed& b) { return a.report.t < b.report.t; });
+  return all;
+}
+
+double median_update_ns(Tracker& tracker, const std::vector<Sensed>& all) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> blocks;
+  for (std::size_t i = 0; i + kTimedBlock <= all.size(); i += kTimedBlock) {
+    const auto begin = Clock::now();
+    for (std::size_t j = i; j < i + kTimedBlock; ++j)
+      (void)tracker.update(all[j].report.t, all[j].report.channels, all[j].remote);
+    blocks.push_back(std::chrono::duration<double, std::nano>(Clock::now() - begin).count() / kTimedBlock);
+  }
+  if (blocks.empty()) return 0;
+  std::nth_element(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2), blocks.end());
+  return blocks[blocks.size() / 2];
+}
+
+template <typename Named>
+const Named& named(const std::vector<Named>& all, const std::string& name, const char* what) {
+  std::vector<std::string> names;
+  for (const Named& n : all) {
+    if (n.name == name) return n;
+    names.push_back(n.name);
+  }
+  fail(ErrorKind::input, "{} '{}' is not known; choose one of {}", what, name, fmt::join(names, ", "));
+}
+
+}  // namespace
+
+const std::vector<SensorCase>& sensor_cases() {
+  static const std::vector<SensorCase> all = make_sensor_cases();
+  return all;
+}
+
+ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
+                           const ValidationOptions& options) {
+  const Contender who = contender(tracker);
+  TrackerSettings settings = options.tracker;
+  if (who.triangle && settings.leds.count < 3) settings.leds = LedLayout::triangle();
+  settings.fov = sensor.settings.fov;
+  settings.X_R1R2 = second_remote();
+  const std::vector<Sensed> all =
+      sense_all(sensor_settings(sensor, path, settings.leds), path, who.base == "stereo", options.seed);
+
+  const std::unique_ptr<Tracker> judged = make_tracker(who.base, settings);
+  ValidationFigures figures;
+  for (const Sensed& s : all) {
+    const Report& report = judged->update(s.report.t, s.report.channels, s.remote);
+    if (s.remote == 0) figures.add(s.report, report);
+  }
+  ValidationRow row = figures.result();
+  row.tracker = tracker;
+  row.trajectory = path.name;
+  row.sensor = sensor.name;
+  if (options.measure_time) row.update_ns = median_update_ns(*make_tracker(who.base, settings), all);
+  return row;
+}
+
+std::vector<ValidationRow> validate(const ValidationOptions& options) {
+  std::vector<std::string> trackers = options.trackers;
+  if (trackers.empty()) {
+    trackers = tracker_names();
+    trackers.emplace_back("scaat/3");
+  }
+  std::vector<std::string> paths = options.trajectories;
+  if (paths.empty())
+    for (const Trajectory& t : trajectories()) paths.push_back(t.name);
+  const std::vector<std::string> sensors =
+      options.sensors.empty() ? std::vector<std::string>{"ideal", "wiimote"} : options.sensors;
+
+  std::vector<ValidationRow> rows;
+  for (const std::string& sensor : sensors)
+    for (const std::string& path : paths)
+      for (const std::string& tracker : trackers)
+        rows.push_back(validate_one(tracker, trajectory(path), named(sensor_cases(), sensor, "sensor"), options));
+  return rows;
+}
+
+}  // namespace verisim::wii

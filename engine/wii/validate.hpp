@@ -1,0 +1,71 @@
+// Trackers against the virtual Wii Remote: errors, availability, latency, honesty of the covariance, cost.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/wii/trajectories.hpp"
+
+namespace verisim::wii {
+
+/// A named way for the sensor to be imperfect.
+struct SensorCase {
+  std::string name;
+  std::string what;
+  RemoteSettings settings;  ///< its leds, outages and exchanges are replaced by the run's
+};
+/// ideal, noisy, wiimote, low-sensitivity, low-battery, lamp.
+[[nodiscard]] const std::vector<SensorCase>& sensor_cases();
+
+/// Of the valid reports of one run, error = estimate - truth in L.
+struct ErrorFigures {
+  double rms = 0;                        ///< m, deg
+  double p95 = 0;                        ///< m, deg
+  double max = 0;                        ///< m, deg
+  Vector3d rms_axis = Vector3d::Zero();  ///< m, deg (about x: pitch, y: yaw, z: roll)
+};
+
+/// One row of the table.
+struct ValidationRow {
+  std::string tracker, trajectory, sensor;
+  int reports = 0;  ///< that arrived
+  int valid = 0;
+  ErrorFigures position;      ///< m
+  ErrorFigures orientation;   ///< deg
+  double availability = 0;    ///< share of valid reports among those with two or more LEDs in view, start included
+  double false_validity = 0;  ///< share of valid reports among those without any LED in view for over 0.1 s
+  double latency = 0;         ///< s by which the estimate trails the truth, -sum(e . v) / sum(v . v); 0 without motion
+  /// Normalised estimation error squared of the position over its three degrees of freedom: 1 if the covariance is
+  /// right, above if it promises too much. Errors repeat from report to report (rounding stands still with the head),
+  /// so the chi-square bounds count only as many independent samples as the autocorrelation of the series leaves.
+  double nees = 0;
+  double nees_upper = 0;      ///< 97.5 % bound of the mean
+  double within_95 = 0;       ///< share of errors inside their own 95 % ellipsoid
+  bool consistent = false;    ///< nees <= nees_upper: never too sure
+  int reacquired = 0;         ///< reports that said so
+  double longest_return = 0;  ///< s from an LED pair's return to the next valid report, worst
+  double update_ns = 0;       ///< wall clock per update, median of blocks; not reproducible
+};
+
+struct ValidationOptions {
+  std::vector<std::string> trackers;      ///< empty: all, and scaat/3
+  std::vector<std::string> trajectories;  ///< empty: all
+  std::vector<std::string> sensors;       ///< empty: ideal and wiimote
+  std::uint64_t seed = 1;
+  TrackerSettings tracker;  ///< of every tracker; LEDs come from the tracker's own glasses
+  bool measure_time = true;
+};
+
+/// One run of a tracker; "NAME/3" is that tracker with three LEDs. Glasses are two LEDs, or the triangle for three-led
+/// and NAME/3; stereo gets a second remote 0.5 m beside the first, turned towards the head.
+[[nodiscard]] ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
+                                         const ValidationOptions& options);
+/// Every combination, trackers innermost: about 1 ms per simulated second each. Error(input) for a name that is not
+/// known.
+[[nodiscard]] std::vector<ValidationRow> validate(const ValidationOptions& options);
+
+/// The table as text for a terminal, or as CSV with every figure.
+[[nodiscard]] std::string table_of(const std::vector<ValidationRow>& rows);
+[[nodiscard]] std::string csv_of(const std::vector<ValidationRow>& rows);
+
+}  // namespace verisim::wii

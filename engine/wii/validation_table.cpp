@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include "engine/wii/validate.hpp"
+
+namespace verisim::wii {
+
+std::string table_of(const std::vector<ValidationRow>& rows) {
+  std::string text;
+  std::string heading;
+  for (const ValidationRow& r : rows) {
+    const std::string here = fmt::format("{}, {}", r.sensor, r.trajectory);
+    if (here != heading) {
+      text += fmt::format("\n{:<28}{:>9}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", here, "cm rms", "95 %",
+                          "max", "deg rms", "yaw", "roll", "avail %", "lag ms", "nees", "in 95%", "ns");
+      heading = here;
+    }
+    text += fmt::format(
+        "  {:<26}{:>9.2f}{:>8.2f}{:>8.2f}{:>9.2f}{:>8.2f}{:>8.2f}{:>8.1f}{:>8.1f}{:>7.1f}{}{:>8.1f}{:>8.0f}\n",
+        r.tracker, 100 * r.position.rms, 100 * r.position.p95, 100 * r.position.max, r.orientation.rms,
+        r.orientation.rms_axis.y(), r.orientation.rms_axis.z(), 100 * r.availability, 1000 * r.latency, r.nees,
+        r.consistent ? ' ' : '!', 100 * r.within_95, r.update_ns);
+  }
+  return text + "\n! = errors beyond what the covariance promises (97.5 % bound of chi-square)\n";
+}
+
+std::string csv_of(const std::vector<ValidationRow>& rows) {
+  std::string text =
+      "sensor,trajectory,tracker,reports,valid,availability,false_validity,reacquired,longest_return_s,"
+      "position_rms_m,position_p95_m,position_max_m,position_rms_x_m,position_rms_y_m,position_rms_z_m,"
+      "orientation_rms_deg,orientation_p95_deg,orientation_max_deg,orientation_rms_x_deg,orientation_rms_y_deg,"
+      "orientation_rms_z_deg,latency_s,nees,nees_upper,consistent,within_95,update_ns\n";
+  const auto figures = [](const ErrorFigures& f) {
+    return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", f.rms, f.p95, f.max, f.rms_axis.x(), f.rms_axis.y(),
+                       f.rms_axis.z());
+  };
+  for (const ValidationRow& r : rows)
+    text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:d},{:.6g},{:.4g}\n",
+                        r.sensor, r.trajectory, r.tracker, r.reports, r.valid, r.availability, r.false_validity,
+                        r.reacquired, r.longest_return, figures(r.position), figures(r.orientation), r.latency, r.nees,
+                        r.nees_upper, r.consistent, r.within_95, r.update_ns);
+  return text;
+}
+
+}  // namespace verisim::wii
