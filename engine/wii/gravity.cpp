@@ -6,6 +6,7 @@ namespace verisim::wii {
 namespace {
 
 constexpr double kShaken = 0.3;        // g
+constexpr double kGapMax = 0.25;       // s; a rate says nothing after a longer one
 constexpr double kDirectionMin = 0.1;  // g; opposed readings can average to nothing
 
 }  // namespace
@@ -27,11 +28,19 @@ Matrix3d levelling(const Vector3d& up_R) {
 void GravityFilter::add(double dt, const Vector3d& force_R) {
   if (!known_) {
     up_R_ = force_R;
+    rate_R_.setZero();
   } else {
-    if (force_R == up_R_ || std::abs(force_R.norm() - 1) > kShaken) return;
-    const double weight = dt / (time_constant_ + dt);
-    const Vector3d mixed = up_R_ + weight * (force_R - up_R_);
-    up_R_ = mixed.norm() < kDirectionMin ? force_R : mixed;
+    const bool shaken = std::abs(force_R.norm() - 1) > kShaken;
+    if (shaken || dt > kGapMax) rate_R_.setZero();
+    if (shaken || (force_R == up_R_ && rate_R_.isZero(0))) return;
+    const double keep = time_constant_ / (time_constant_ + dt);
+    const Vector3d expected = up_R_ + dt * rate_R_;
+    const Vector3d surprise = force_R - expected;
+    const Vector3d mixed = expected + (1 - keep * keep) * surprise;
+    rate_R_ += (1 - keep) / (time_constant_ + dt) * surprise;
+    const bool opposed = mixed.norm() < kDirectionMin;
+    up_R_ = opposed ? force_R : mixed;
+    if (opposed) rate_R_.setZero();
   }
   known_ = true;
   C_LR_ = levelling(up_R_);

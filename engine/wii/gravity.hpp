@@ -12,8 +12,10 @@ namespace verisim::wii {
 /// @pre up_R is finite and not zero
 [[nodiscard]] Matrix3d levelling(const Vector3d& up_R);
 
-/// The direction of gravity, smoothed: readings count for about `time_constant`, the first one at once; readings whose
-/// length says that the remote is shaken (outside 1 +- 0.3 g) are left out once a direction is known.
+/// The direction of gravity, smoothed: readings count for about `time_constant`, the first one at once. A remote that
+/// tilts steadily is followed without lag (the filter knows a rate: double exponential smoothing, both poles at the
+/// time constant). Readings whose length says that the remote is shaken (outside 1 +- 0.3 g) are left out once a
+/// direction is known.
 class GravityFilter {
  public:
   explicit GravityFilter(double time_constant) : time_constant_(time_constant) {}
@@ -29,6 +31,7 @@ class GravityFilter {
   double time_constant_;
   bool known_ = false;
   Vector3d up_R_ = Vector3d::UnitY();
+  Vector3d rate_R_ = Vector3d::Zero();  ///< 1/s
   Matrix3d C_LR_ = Matrix3d::Identity();
 };
 

@@ -10,8 +10,12 @@ namespace {
 // Chosen on the natural trajectory: lower lags behind it, higher lets pixel noise through.
 constexpr double kLinearDensity = 0.15;  // m^2/s^3
 constexpr double kAngularDensity = 2;    // rad^2/s^3
+// Turning that the remaining LEDs cannot tell from moving: to allow what heads do at their fastest would let every
+// motion be explained as a turn.
+constexpr double kGuessedDensity = 0.1;  // rad^2/s^3
 constexpr double kUnseenDensity = 8;     // times as much once nothing is seen: the head may do anything
 constexpr double kDecay = 0.25;          // s
+constexpr double kSlow = 0.2;            // s
 constexpr double kSpinMax = 15;          // rad/s
 
 }  // namespace
@@ -21,6 +25,9 @@ void HeadFilter::start(const Pose& X_RH, const Matrix6d& covariance) {
   R_RH_ = X_RH.rotation.toRotationMatrix();
   v_.setZero();
   w_.setZero();
+  v_slow_.setZero();
+  w_slow_.setZero();
+  view_ = View::all;
   P_.setZero();
   P_.block<3, 3>(0, 0) = covariance.block<3, 3>(0, 0);
   P_.block<3, 3>(0, 6) = covariance.block<3, 3>(0, 3);
@@ -30,7 +37,15 @@ void HeadFilter::start(const Pose& X_RH, const Matrix6d& covariance) {
   P_.diagonal().segment<3>(9).setConstant(1);
 }
 
-void HeadFilter::predict(double dt, bool seen) {
+void HeadFilter::predict(double dt, View view) {
+  if (view == View::all) {
+    v_slow_ += dt / (kSlow + dt) * (v_ - v_slow_);
+    w_slow_ += dt / (kSlow + dt) * (w_ - w_slow_);
+  } else if (view_ == View::all) {
+    w_ = w_slow_;
+    if (view != View::pair) v_ = v_slow_;
+  }
+  view_ = view;
   X_RH_.position += dt * v_;
   turn(dt * w_);
 
@@ -39,16 +54,8 @@ void HeadFilter::predict(double dt, bool seen) {
   P_.middleRows<3>(6) += dt * P_.middleRows<3>(9);
   P_.middleCols<3>(0) += dt * P_.middleCols<3>(3);
   P_.middleCols<3>(6) += dt * P_.middleCols<3>(9);
-  if (!seen) {
-    const double keep = kDecay / (kDecay + dt);
-    v_ *= keep;
-    w_ *= keep;
-    for (const int block : {3, 9}) {
-      P_.middleRows<3>(block) *= keep;
-      P_.middleCols<3>(block) *= keep;
-    }
-  }
-  const double more = seen ? 1 : kUnseenDensity;
+  if (view != View::all) slow_down(kDecay / (kDecay + dt), view);
+  const double more = view == View::none ? kUnseenDensity : 1;
   const auto drive = [&](int block, double density) {
     for (int i = block; i < block + 3; ++i) {
       P_(i, i) += density * dt * dt * dt / 3;
@@ -58,7 +65,22 @@ void HeadFilter::predict(double dt, bool seen) {
     }
   };
   drive(0, more * kLinearDensity);
-  drive(6, more * kAngularDensity);
+  const bool guessing = view == View::pair || view == View::one;
+  drive(6, more * (guessing ? kGuessedDensity : kAngularDensity));
+}
+
+void HeadFilter::slow_down(double keep, View view) {
+  w_ *= keep;
+  P_.middleRows<3>(9) *= keep;
+  P_.middleCols<3>(9) *= keep;
+  if (view == View::pair) return;
+  // One LED still shows motion across its ray: to damp that would make a lie of it, and a lie of depth to explain it.
+  const Vector3d ray = X_RH_.position.normalized();
+  const Matrix3d damp = view == View::none ? Matrix3d(keep * Matrix3d::Identity())
+                                           : Matrix3d(Matrix3d::Identity() - (1 - keep) * ray * ray.transpose());
+  v_ = damp * v_;
+  P_.middleRows<3>(3) = (damp * P_.middleRows<3>(3)).eval();
+  P_.middleCols<3>(3) = (P_.middleCols<3>(3) * damp).eval();
 }
 
 bool HeadFilter::correct(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance, double gate) {
@@ -67,13 +89,32 @@ bool HeadFilter::correct(const Vector3d& g_p, const Vector3d& g_theta, double re
   if (!(residual * residual <= gate * gate * expected)) return false;
   const Vector12d gain = Pg / expected;
   P_.noalias() -= gain * Pg.transpose();
-  X_RH_.position += residual * gain.segment<3>(0);
-  v_ += residual * gain.segment<3>(3);
-  turn(residual * gain.segment<3>(6));
-  w_ += residual * gain.segment<3>(9);
+  move(residual * gain);
+  return true;
+}
+
+bool HeadFilter::correct_across(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance,
+                                double gate) {
+  const Vector12d Pg = P_.middleCols<3>(0) * g_p + P_.middleCols<3>(6) * g_theta;
+  const double expected = g_p.dot(Pg.segment<3>(0)) + g_theta.dot(Pg.segment<3>(6)) + variance;
+  if (!(residual * residual <= gate * gate * expected)) return false;
+  Vector12d gain = Pg / expected;
+  const Vector3d ray = X_RH_.position.normalized();
+  for (const int block : {0, 3}) gain.segment<3>(block) -= ray * ray.dot(gain.segment<3>(block));
+  for (const int block : {6, 9}) gain.segment<3>(block).setZero();
+  // The covariance that any gain leaves, not only the best one (Joseph's form, written out).
+  P_ += expected * gain * gain.transpose() - gain * Pg.transpose() - Pg * gain.transpose();
+  move(residual * gain);
+  return true;
+}
+
+void HeadFilter::move(const Vector12d& error) {
+  X_RH_.position += error.segment<3>(0);
+  v_ += error.segment<3>(3);
+  turn(error.segment<3>(6));
+  w_ += error.segment<3>(9);
   v_ *= std::min(1.0, kSpeedMax / std::max(v_.norm(), kSpeedMax));
   w_ *= std::min(1.0, kSpinMax / std::max(w_.norm(), kSpinMax));
-  return true;
 }
 
 void HeadFilter::turn(const Vector3d& rotation) {

@@ -18,13 +18,21 @@ class HeadFilter {
   /// Starts at a pose in R with its covariance; at rest, give or take 0.5 m/s and 1 rad/s.
   void start(const Pose& X_RH, const Matrix6d& covariance);
 
-  /// Moves on by dt seconds. `seen`: LEDs were seen lately; else velocities die away within 0.25 s, so that a head that
-  /// is not seen stays where it was last.
-  void predict(double dt, bool seen);
+  /// How much of the head the last report showed: two of three LEDs are a pair.
+  enum class View { all, pair, one, none };
+  /// Moves on by dt seconds. Where the full view ends, the mean velocities of the last 0.2 s take over from the
+  /// momentary ones, which are noisier, and what is no longer seen dies away within 0.25 s: rotation always, motion
+  /// along the ray with one LED, all motion with none.
+  void predict(double dt, View view);
 
   /// One scalar whose prediction is off by `residual`, with gradient (g_p, g_theta) and variance `variance`. Refused,
   /// and false, when the residual is beyond `gate` standard deviations of what was expected.
   bool correct(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance, double gate);
+
+  /// The same for an LED that is alone in view. Only motion across its ray is corrected; depth and orientation stay as
+  /// they are, with their uncertainty (a Schmidt-Kalman update): one LED tells nothing of them, but would, through
+  /// rounding and acceleration, claim to.
+  bool correct_across(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance, double gate);
 
   [[nodiscard]] const Pose& X_RH() const { return X_RH_; }
   [[nodiscard]] const Matrix3d& R_RH() const { return R_RH_; }
@@ -36,11 +44,16 @@ class HeadFilter {
 
  private:
   void turn(const Vector3d& rotation);
+  void slow_down(double keep, View view);
+  void move(const Vector12d& error);
 
   Pose X_RH_;
   Matrix3d R_RH_ = Matrix3d::Identity();  ///< = X_RH_.rotation
   Vector3d v_ = Vector3d::Zero();
   Vector3d w_ = Vector3d::Zero();
+  Vector3d v_slow_ = Vector3d::Zero();
+  Vector3d w_slow_ = Vector3d::Zero();
+  View view_ = View::all;
   Matrix12d P_ = Matrix12d::Identity();
 };
 

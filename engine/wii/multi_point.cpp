@@ -14,7 +14,10 @@ constexpr double kOtherRemoteMax = 0.03;  // s: three reports; an older image of
 constexpr double kBothSilent = 0.05;      // s without the first remote after which the second reports
 constexpr double kGate = 60;              // pixel
 constexpr double kGateGrowth = 1500;      // pixel per s without a report
-constexpr double kTurnRate = 1;           // rad/s: how fast a yaw that is no longer seen becomes unknown
+constexpr double kTurnRate = 0.3;         // rad/s: how fast a yaw that is no longer seen becomes unknown
+constexpr double kStillKnown = 0.02;      // rad, of a yaw that was seen one report ago
+constexpr double kSigmaMax = 0.15;        // m: less sure than this is not valid
+constexpr double kCostMax = 50;           // per LED seen: beyond any pixel noise, so not this head
 constexpr double kRollSigma = 0.5;        // rad
 constexpr double kPriorWidth = 2;         // times the settings' sigmas: where yaw is seen, belief should hardly count
 
@@ -48,9 +51,10 @@ class MultiPoint final : public TrackerBase {
       found_ =
           remotes_ == 1 ? acquire_head(reading, settings(), pinhole(), solver_, upright_).solved : acquire_pairs(t);
     }
-    if (!found_.found) return;
+    if (!found_.found || found_.cost > kCostMax * settings().leds.count) return;
     level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
-    result.usable = result.known = true;
+    result.known = true;
+    result.usable = result.covariance.diagonal().head<3>().maxCoeff() < kSigmaMax * kSigmaMax;
   }
 
   [[nodiscard]] bool reports(double t, int remote) const override {
@@ -73,8 +77,8 @@ class MultiPoint final : public TrackerBase {
     const double drift = kTurnRate * (t - t_full_);
     u.row_x = R_LH(2, 0);
     u.row_y = R_LH(2, 1);
-    u.sigma_x = std::min(u.sigma_x, settings().yaw_sigma / 4 + drift);
-    u.sigma_y = std::min(u.sigma_y, settings().pitch_sigma / 4 + drift);
+    u.sigma_x = std::min(u.sigma_x, kStillKnown + drift);
+    u.sigma_y = std::min(u.sigma_y, kStillKnown + drift);
   }
 
   [[nodiscard]] SolvedPose follow(double t) {

@@ -32,10 +32,10 @@ struct Upright {
 };
 
 struct SolvedPose {
-  Pose X_RH;            ///< in coordinates of the first remote
-  Matrix6d covariance;  ///< of position and rotation vector in R [m^2, rad^2]
-  double cost = 0;      ///< sum of squared residuals over their variances
-  bool found = false;   ///< converged with every LED in front of its remote
+  Pose X_RH;                               ///< in coordinates of the first remote
+  Matrix6d covariance = Matrix6d::Zero();  ///< of position and rotation vector in R [m^2, rad^2]
+  double cost = 0;                         ///< sum of squared residuals over their variances
+  bool found = false;                      ///< converged with every LED in front of its remote
 };
 
 class PoseSolver {

@@ -1,6 +1,7 @@
 // scaat: every pixel coordinate, blob size and belief about heads corrects the filter by itself, so that one LED alone
 // still helps and none at all only lets the covariance grow. The accelerometer levels the state and says what "upright"
 // is.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/wii/acquisition.hpp"
@@ -23,7 +24,7 @@ constexpr double kPinned = 1 * kDegree;   // two LEDs: yaw and pitch are held, n
 constexpr double kOverturned = -0.2;      // R_LH(1,1): nobody's head
 constexpr int kPatience = 3;              // reports in which visible blobs do not fit before the head is sought anew
 constexpr double kSizeSigma = 0.5;        // of a blob's size, which is a whole number
-constexpr double kSizeRepeats = 10;       // reports that show the same rounding error
+constexpr double kSizeRepeats = 50;       // reports that show the same rounding error
 constexpr double kSizeLearning = 0.02;    // per report: the LEDs' brightness changes with their cells, slowly
 constexpr double kRoundingPixels = 0.29;  // 1 / sqrt(12): a head at rest does not average its rounding errors away
 
@@ -46,19 +47,26 @@ class Scaat final : public TrackerBase {
     const Matrix3d& C_LR = gravity(0).C_LR();
     if (running_ && t - t_seen_ > kForgetAfter) running_ = false;
     int seen = 0;
-    if (running_) {
-      filter_.predict(dt, misses_ == 0);
+    const bool returned = t - t_seen_ > kCoastMax && reading.blob_count >= std::min(settings().leds.count, 3);
+    if (running_ && returned && acquire(t, reading, C_LR)) {
+      seen = settings().leds.count;
+    } else if (running_) {
+      filter_.predict(dt, view_);
       seen = correct_with(reading, C_LR, dt);
-      misses_ = seen > 0 ? 0 : misses_ + 1;
+      view_ = view_of(seen);
     }
-    const bool lost = !running_ || overturned(C_LR) ||
-                      (seen < 2 && reading.blob_count >= 2 && ++strange_ >= kPatience) ||
-                      (seen == 0 && reading.blob_count >= 2 && t - t_seen_ > kCoastMax);
+    const bool lost = !running_ || overturned(C_LR) || (seen < 2 && reading.blob_count >= 2 && ++strange_ >= kPatience);
     if (seen >= 2) strange_ = 0;
     if (lost && acquire(t, reading, C_LR)) seen = settings().leds.count;
     if (!running_) return;
     if (seen > 0) t_seen_ = t;
     report(t, seen, C_LR, result);
+  }
+
+  [[nodiscard]] HeadFilter::View view_of(int seen) const {
+    if (seen == 0) return HeadFilter::View::none;
+    if (seen == 1) return HeadFilter::View::one;
+    return seen < settings().leds.count ? HeadFilter::View::pair : HeadFilter::View::all;
   }
 
   // ---- one measurement at a time
@@ -72,23 +80,25 @@ class Scaat final : public TrackerBase {
     const double spread = pinhole().fx * std::sqrt(filter_.position_variance()) / filter_.X_RH().position.z();
     const Assignment blobs =
         nearest_assignment(reading, std::span(expected).first(leds), std::min(kPixelGateMax, kPixelGate + 3 * spread));
+    const auto assigned = std::count_if(blobs.begin(), blobs.end(), [](int b) { return b >= 0; });
+    const bool alone_in_view = assigned == 1;
     int seen = 0;
-    int alone = -1;
+    int last = -1;
     for (std::size_t led = 0; led < leds; ++led) {
       if (blobs[led] < 0) continue;
       const Blob& blob = reading.blobs[static_cast<std::size_t>(blobs[led])];
-      if (!correct_pixel(settings().leds.p_H[led], blob)) continue;
+      if (!correct_pixel(settings().leds.p_H[led], blob, alone_in_view)) continue;
       ++seen;
-      alone = blobs[led];
+      last = blobs[led];
       if (led < 2) pair_.blob[led] = blobs[led];
     }
-    if (seen == 1) correct_size(reading.blobs[static_cast<std::size_t>(alone)]);
-    if (seen >= 2) learn_size(reading.blobs[static_cast<std::size_t>(alone)]);
+    if (seen == 1) correct_size(reading.blobs[static_cast<std::size_t>(last)]);
+    if (seen >= 2) learn_size(reading.blobs[static_cast<std::size_t>(last)]);
     correct_upright(C_LR, dt);
     return seen;
   }
 
-  bool correct_pixel(const Vector3d& p_H, const Blob& blob) {
+  bool correct_pixel(const Vector3d& p_H, const Blob& blob, bool alone) {
     const auto axis = [&](bool horizontal) {
       const Vector3d arm = filter_.R_RH() * p_H;
       const Vector3d p = filter_.X_RH().position + arm;
@@ -97,7 +107,9 @@ class Scaat final : public TrackerBase {
       const double slope = (horizontal ? p.x() : p.y()) / p.z();
       const Vector3d g = f / p.z() * (horizontal ? Vector3d(1, 0, -slope) : Vector3d(0, 1, -slope));
       const double measured = horizontal ? blob.u - kWidth / 2 : blob.v - kHeight / 2;
-      return filter_.correct(g, arm.cross(g), measured - f * slope, pixel_variance_, kGateSigmas);
+      const double off = measured - f * slope;
+      return alone ? filter_.correct_across(g, arm.cross(g), off, pixel_variance_, kGateSigmas)
+                   : filter_.correct(g, arm.cross(g), off, pixel_variance_, kGateSigmas);
     };
     const bool u = axis(true);
     const bool v = axis(false);
@@ -164,7 +176,8 @@ class Scaat final : public TrackerBase {
     }
     filter_.start(X_RH, covariance_R);
     running_ = true;
-    misses_ = strange_ = 0;
+    view_ = HeadFilter::View::all;
+    strange_ = 0;
     return true;
   }
 
@@ -211,8 +224,8 @@ class Scaat final : public TrackerBase {
   double pixel_variance_;
   bool running_ = false;
   double t_seen_ = 0;
-  int misses_ = 0;   ///< reports in a row without any LED
-  int strange_ = 0;  ///< reports in a row whose blobs do not fit
+  HeadFilter::View view_ = HeadFilter::View::all;  ///< of the last report
+  int strange_ = 0;                                ///< reports in a row whose blobs do not fit
   double size_at_1m_ = 4;
 };
 

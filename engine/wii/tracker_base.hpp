@@ -11,7 +11,7 @@ namespace verisim::wii {
 /// Where the head seems to be after one report.
 struct Estimate {
   Pose pose;  ///< X_LH
-  Matrix6d covariance;
+  Matrix6d covariance = Matrix6d::Zero();
   bool usable = false;  ///< may become a valid report, if the admission rules agree
   bool known = false;   ///< pose holds an estimate, usable or not
 };

@@ -30,11 +30,12 @@ Situation natural(double t, bool with_yaw) {
       p, head_rotation(with_yaw ? sum_of_sines(kYaw, t) : 0, sum_of_sines(kPitch, t), sum_of_sines(kRoll, t)));
 }
 
-/// At rest in each of 5 x 3 x 3 places; dark for the first half of each stay, so that each is a new beginning.
+/// At rest in each of 5 x 3 x 3 places. Dark for 0.15 s before and after each change, so that each is a new beginning.
 constexpr int kGridX = 5;
 constexpr int kGridY = 3;
 constexpr int kGridZ = 3;
 constexpr double kGridRest = 0.6;
+constexpr double kGridDark = 0.15;
 constexpr double kGridDuration = kGridX * kGridY * kGridZ * kGridRest;
 
 Situation grid(double t) {
@@ -92,7 +93,7 @@ std::vector<Outage> every_two_seconds(int led, double until) {
 std::vector<Outage> between_cells() {
   std::vector<Outage> outages;
   for (int cell = 0; cell < kGridX * kGridY * kGridZ; ++cell)
-    outages.push_back({-1, cell * kGridRest, (cell + 0.5) * kGridRest});
+    outages.push_back({-1, cell * kGridRest - kGridDark, cell * kGridRest + kGridDark});
   return outages;
 }
 

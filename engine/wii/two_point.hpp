@@ -16,8 +16,8 @@ struct LedPair {
 };
 
 struct TwoPointPose {
-  Vector3d p_L;         ///< origin of H [m]
-  double cos_roll = 1;  ///< R_LH = Rz(roll)
+  Vector3d p_L = Vector3d::Zero();  ///< origin of H [m]
+  double cos_roll = 1;              ///< R_LH = Rz(roll)
   double sin_roll = 0;
   double depth = 0;  ///< of the first LED along the lens axis [m]
   bool found = false;

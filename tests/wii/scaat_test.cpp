@@ -14,7 +14,7 @@ TEST(HeadFilter, CovarianceGrowsWhileNothingIsSeenAndTheHeadStaysNear) {
   filter.start({{0, 0, 1}, Quaterniond::Identity()}, 1e-6 * Matrix6d::Identity());
   double last = filter.position_variance();
   for (int i = 0; i < 100; ++i) {
-    filter.predict(0.01, false);
+    filter.predict(0.01, HeadFilter::View::none);
     EXPECT_GT(filter.position_variance(), last);
     last = filter.position_variance();
   }
