@@ -42,7 +42,8 @@ class PoseSolver {
  public:
   explicit PoseSolver(const TrackerSettings& settings);
 
-  /// From `start`, at most 8 steps, each about 100 flops per sighting and a 6 x 6 factorisation. No allocation.
+  /// From `start`, at most 12 steps, usually 2, each about 100 flops per sighting and a 6 x 6 factorisation. No
+  /// allocation.
   [[nodiscard]] SolvedPose solve(std::span<const Sighting> sightings, const Upright& upright, const Pose& start) const;
   /// The pixel at which a remote sees a point of the head; false if it lies behind the lens.
   [[nodiscard]] bool project(const Pose& X_RH, const Vector3d& p_H, int remote, Eigen::Vector2d& pixel) const;

@@ -47,17 +47,16 @@ class Scaat final : public TrackerBase {
     const Matrix3d& C_LR = gravity(0).C_LR();
     if (running_ && t - t_seen_ > kForgetAfter) running_ = false;
     int seen = 0;
-    const bool returned = t - t_seen_ > kCoastMax && reading.blob_count >= std::min(settings().leds.count, 3);
-    if (running_ && returned && acquire(t, reading, C_LR)) {
-      seen = settings().leds.count;
-    } else if (running_) {
+    if (running_) {
       filter_.predict(dt, view_);
-      seen = correct_with(reading, C_LR, dt);
+      // After a loss no blob has a name any more: what is nearest may be another LED, or a lamp.
+      const bool names_known = t - t_seen_ <= kCoastMax;
+      if (names_known) seen = correct_with(reading, C_LR, dt);
       view_ = view_of(seen);
+      strange_ = seen < 2 && reading.blob_count >= 2 ? strange_ + 1 : 0;
+      lost_ = !names_known || overturned(C_LR) || strange_ >= kPatience;
     }
-    const bool lost = !running_ || overturned(C_LR) || (seen < 2 && reading.blob_count >= 2 && ++strange_ >= kPatience);
-    if (seen >= 2) strange_ = 0;
-    if (lost && acquire(t, reading, C_LR)) seen = settings().leds.count;
+    if ((!running_ || lost_) && acquire(t, reading, C_LR)) seen = settings().leds.count;
     if (!running_) return;
     if (seen > 0) t_seen_ = t;
     report(t, seen, C_LR, result);
@@ -225,6 +224,7 @@ class Scaat final : public TrackerBase {
   bool running_ = false;
   double t_seen_ = 0;
   HeadFilter::View view_ = HeadFilter::View::all;  ///< of the last report
+  bool lost_ = false;                              ///< the head must be sought anew
   int strange_ = 0;                                ///< reports in a row whose blobs do not fit
   double size_at_1m_ = 4;
 };
