@@ -77,8 +77,8 @@ class MultiPoint final : public TrackerBase {
     const double drift = kTurnRate * (t - t_full_);
     u.row_x = R_LH(2, 0);
     u.row_y = R_LH(2, 1);
-    u.sigma_x = std::min(u.sigma_x, kStillKnown + drift);
-    u.sigma_y = std::min(u.sigma_y, kStillKnown + drift);
+    u.sigma_x = std::min(settings().yaw_sigma, kStillKnown + drift);
+    u.sigma_y = std::min(settings().pitch_sigma, kStillKnown + drift);
   }
 
   [[nodiscard]] SolvedPose follow(double t) {
