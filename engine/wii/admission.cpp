@@ -1,5 +1,7 @@
 #include "engine/wii/admission.hpp"
 
+#include <cmath>
+
 namespace verisim::wii {
 namespace {
 
@@ -9,27 +11,31 @@ constexpr double kWithin = 0.999;
 
 }  // namespace
 
-bool Admission::reachable(const Place& from, double t, double slack, const Vector3d& p_L) {
-  return from.set && (p_L - from.p_L).norm() <= kWithin * kSpeedMax * (t - from.t) + slack;
+bool Admission::reachable(const Place& from, double t, double variance, const Vector3d& p_L) {
+  if (!from.set) return false;
+  const double way = kWithin * kSpeedMax * (t - from.t);
+  const double square = (p_L - from.p_L).squaredNorm();
+  if (square <= way * way) return true;  // nearly always: no square root
+  const double limit = way + kSlackSigmas * std::sqrt(variance);
+  return square <= limit * limit;
 }
 
-Admission::Verdict Admission::judge(double t, double sigma, Vector3d& p_L) {
-  const double distance = p_L.norm();
-  if (!(distance >= kDistanceMin && distance <= kDistanceMax)) return Verdict::refused;
+Admission::Verdict Admission::judge(double t, double variance, Vector3d& p_L) {
+  const double square = p_L.squaredNorm();
+  if (!(square >= kDistanceMin * kDistanceMin && square <= kDistanceMax * kDistanceMax)) return Verdict::refused;
 
-  const double slack = kSlackSigmas * sigma;
   const bool remembered = last_.set && t - last_.t <= kSilenceMax;
-  if (remembered && reachable(last_, t, slack, p_L)) {
+  if (remembered && reachable(last_, t, variance, p_L)) {
     const Vector3d step = p_L - last_.p_L;
     const double limit = kWithin * kSpeedMax * (t - last_.t);
-    if (step.norm() > limit) p_L = last_.p_L + step * (limit / step.norm());
+    if (step.squaredNorm() > limit * limit) p_L = last_.p_L + step * (limit / step.norm());
     // Drawn towards the last place, a pose on the far shell can only come nearer; on the near one the chord may cut in.
-    if (p_L.norm() < kDistanceMin) return Verdict::refused;
+    if (p_L.squaredNorm() < kDistanceMin * kDistanceMin) return Verdict::refused;
     last_ = {true, t, p_L};
     candidate_.set = false;
     return Verdict::continued;
   }
-  if (!remembered || reachable(candidate_, t, slack, p_L)) {
+  if (!remembered || reachable(candidate_, t, variance, p_L)) {
     last_ = {true, t, p_L};
     candidate_.set = false;
     return Verdict::elsewhere;

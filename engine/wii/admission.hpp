@@ -16,10 +16,11 @@ class Admission {
   enum class Verdict { refused, continued, elsewhere };
 
   /// `p_L` may be used as it comes (continued), is drawn back to what kSpeedMax allows since the last admitted one
-  /// (continued; when the excess is within 4 `sigma`, measuring noise and not a jump), has jumped but is the second in
-  /// a row at the new place (elsewhere), or is refused. The first one, and the first after kSilenceMax, is elsewhere.
+  /// (continued; when the excess is within 4 standard deviations, measuring noise and not a jump), has jumped but is
+  /// the second in a row at the new place (elsewhere), or is refused. The first one, and the first after kSilenceMax,
+  /// is elsewhere.
   /// @pre t grows from call to call
-  [[nodiscard]] Verdict judge(double t, double sigma, Vector3d& p_L);
+  [[nodiscard]] Verdict judge(double t, double variance, Vector3d& p_L);
   void forget() { *this = {}; }
 
  private:
@@ -28,7 +29,7 @@ class Admission {
     double t = 0;
     Vector3d p_L = Vector3d::Zero();
   };
-  [[nodiscard]] static bool reachable(const Place& from, double t, double slack, const Vector3d& p_L);
+  [[nodiscard]] static bool reachable(const Place& from, double t, double variance, const Vector3d& p_L);
 
   Place last_;       ///< admitted
   Place candidate_;  ///< refused as a jump, waits for a second one

@@ -60,10 +60,10 @@ void TrackerBase::conclude(double t, Estimate& result) {
   Admission::Verdict verdict = Admission::Verdict::refused;
   if (result.usable) {
     const Vector3d measured = result.pose.position;
-    const double sigma = std::sqrt(result.covariance.diagonal().head<3>().maxCoeff());
-    verdict = admission_.judge(t, sigma, result.pose.position);
+    const double variance = result.covariance.diagonal().head<3>().maxCoeff();
+    verdict = admission_.judge(t, variance, result.pose.position);
     const Vector3d drawn = result.pose.position - measured;
-    result.covariance.topLeftCorner<3, 3>() += drawn * drawn.transpose();
+    if (!drawn.isZero(0)) result.covariance.topLeftCorner<3, 3>() += drawn * drawn.transpose();
   }
   report_.t = t;
   report_.news = true;

@@ -44,10 +44,10 @@ Quaterniond rotation_about_z(double cos_angle, double sin_angle) {
   // Half angles by square roots; the larger half first, so that neither loses digits.
   if (cos_angle >= 0) {
     const double w = std::sqrt((1 + cos_angle) / 2);
-    return Quaterniond{w, 0, 0, sin_angle / (2 * w)}.normalized();
+    return {w, 0, 0, sin_angle / (2 * w)};
   }
   const double z = std::copysign(std::sqrt((1 - cos_angle) / 2), sin_angle);
-  return Quaterniond{sin_angle / (2 * z), 0, 0, z}.normalized();
+  return {sin_angle / (2 * z), 0, 0, z};
 }
 
 }  // namespace verisim::wii

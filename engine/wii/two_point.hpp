@@ -30,7 +30,7 @@ struct TwoPointPose {
 [[nodiscard]] TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R,
                                             const Matrix3d& C_LR);
 
-/// The unit quaternion of Rz(roll), without trigonometry.
+/// The unit quaternion of Rz(angle), without trigonometry. @pre the arguments are a cosine and a sine, to rounding
 [[nodiscard]] Quaterniond rotation_about_z(double cos_angle, double sin_angle);
 
 }  // namespace verisim::wii
