@@ -1,7 +1,7 @@
 #!/bin/sh
 # A compiler launcher that puts another compiler in the place of CMake's: compile_with.sh CLANG++ C++ ARGUMENTS... runs
-# CLANG++ ARGUMENTS..., through ccache where there is one. Both understand g++'s command line.
+# CLANG++ ARGUMENTS... Both understand g++'s command line. Not through ccache: a header compiled before is only good with
+# the very files it was made from, and a cached one has older ones.
 compiler=$1
 shift 2
-if command -v ccache >/dev/null; then exec ccache "$compiler" "$@"; fi
 exec "$compiler" "$@"
