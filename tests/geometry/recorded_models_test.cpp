@@ -169,7 +169,7 @@ const std::vector<RecordedMesh> kMeshFiles = {
 };
 
 /// The file's triangles with nothing done but merging equal coordinates: not what the loader reads, so that the two
-/// check each other. Binary and ASCII STL, OBJ without polygons.
+/// check each other. Binary and ASCII STL, OBJ with convex polygons.
 TriangleMesh read_merged(const std::string& path) {
   const std::string content = testing::read_file(path);
   TriangleMesh mesh;
@@ -187,18 +187,21 @@ TriangleMesh read_merged(const std::string& path) {
       for (const auto& p : triangle) corners.push_back(number_of(p));
     }
   } else {
-    std::istringstream words(content);
+    std::istringstream lines(content);
     std::vector<std::uint32_t> listed;
-    for (std::string word; words >> word;) {
+    for (std::string line, word; std::getline(lines, line);) {
+      std::istringstream words(line);
+      words >> word;
       std::array<float, 3> p = {};
       if (word == "v" || word == "vertex") {
         words >> p[0] >> p[1] >> p[2];
         (word == "v" ? listed : corners).push_back(number_of(p));
       }
-      for (int i = 0; i < 3 && word == "f"; ++i) {
-        std::string corner;
-        words >> corner;
-        corners.push_back(listed.at(std::stoul(corner) - 1));
+      if (word != "f") continue;
+      std::vector<std::uint32_t> polygon;
+      while (words >> word) polygon.push_back(listed.at(std::stoul(word) - 1));
+      for (std::size_t i = 2; i < polygon.size(); ++i) {
+        corners.insert(corners.end(), {polygon[0], polygon[i - 1], polygon[i]});
       }
     }
   }
