@@ -1,0 +1,87 @@
+"""The head trackers on the command line: track, validate, place (INTERFACES section 1)."""
+import csv
+import json
+import math
+import unittest
+
+from program import ProgramTest
+
+COLUMNS = "t,battery,gx,gy,gz,x1,y1,s1,x2,y2,s2,x3,y3,s3,x4,y4,s4"
+AT_REST = "0.75,0,0,1,609,384,4,415,384,4,-1,-1,-1,-1,-1,-1"
+
+
+def trace(header="", rows=20):
+    lines = ["# verisim-trace 1", "# kind: wii", "# rate_hz: 100", "# source: a test"]
+    lines += header.splitlines() + [COLUMNS]
+    return "\n".join(lines + [f"{0.01 * i:.2f},{AT_REST}" for i in range(rows)]) + "\n"
+
+
+class Track(ProgramTest):
+    def track(self, *args):
+        self.succeed("wii", "track", *args, "-o", self.path("pose.csv"))
+        with open(self.path("pose.csv")) as f:
+            return list(csv.DictReader(f))
+
+    def test_writes_one_row_per_sample_with_variances(self):
+        rows = self.track(self.write("head.csv", trace()), "--tracker", "geometric")
+        self.assertEqual(list(rows[0]), "t,valid,px,py,pz,qx,qy,qz,qw,cpx,cpy,cpz,crx,cry,crz".split(","))
+        self.assertEqual([r["valid"] for r in rows], ["1"] * 20)
+        # 194 pixels between LEDs 0.15 m apart: 512 / tan(21.5 deg) * 0.15 / 194.
+        self.assertAlmostEqual(float(rows[9]["pz"]), 512 / math.tan(math.radians(21.5)) * 0.15 / 194, places=12)
+        self.assertGreater(float(rows[9]["cry"]), 0.01, "two LEDs cannot know yaw, and must say so")
+
+    def test_takes_leds_and_field_of_view_from_the_trace(self):
+        head = self.write("head.csv", trace("# leds: 0.1 0 0; -0.1 0 0\n# fov_deg: 33 23"))
+        z = float(self.track(head)[0]["pz"])
+        self.assertAlmostEqual(z, 512 / math.tan(math.radians(16.5)) * 0.2 / 194, places=12)
+
+    def test_stereo_takes_two_placed_traces(self):
+        first = self.write("a.csv", trace("# remote_pose: 0 0 0 0 0 0 1"))
+        second = self.write("b.csv", trace("# remote_pose: 0 0.01 0 0 0 0 1"))
+        rows = self.track(first, "--second", second, "--tracker", "stereo")
+        self.assertEqual(len(rows), 20)
+        unplaced = self.write("c.csv", trace())
+        self.refuse(3, ["c.csv", "remote_pose"], "wii", "track", first, "--second", unplaced, "--tracker", "stereo", "-o",
+                    self.path("x.csv"))
+        self.refuse(2, "--second", "wii", "track", first, "--tracker", "stereo", "-o", self.path("x.csv"))
+
+    def test_refuses_what_it_cannot_use(self):
+        head = self.write("head.csv", trace())
+        out = ["-o", self.path("x.csv")]
+        self.refuse(3, ["three-led", "needs three"], "wii", "track", head, "--tracker", "three-led", *out)
+        self.refuse(2, "geometrik", "wii", "track", head, "--tracker", "geometrik", *out)
+        self.refuse(3, "nowhere.csv", "wii", "track", "nowhere.csv", *out)
+        self.refuse(3, ["leds", "3"], "wii", "track", self.write("l.csv", trace("# leds: 0.1 0; 0 0 0")), *out)
+        self.refuse(3, "fov_deg", "wii", "track", self.write("f.csv", trace("# fov_deg: wide")), *out)
+        self.refuse(5, "cannot be written", "wii", "track", head, "-o", self.path("no/x.csv"))
+
+
+class Validate(ProgramTest):
+    def test_prints_every_tracker_and_trajectory(self):
+        text = self.succeed("wii", "validate", "--sensor", "ideal").stdout
+        for word in ["geometric", "vrpn-compatible", "three-led", "scaat", "stereo", "natural-yaw", "dropout-both"]:
+            self.assertIn(word, text)
+
+    def test_figures_are_the_same_in_every_run_but_for_the_time(self):
+        def figures():
+            args = ["wii", "validate", "--trajectory", "natural", "--sensor", "wiimote", "--json"]
+            rows = json.loads(self.succeed(*args).stdout)["rows"]
+            return [{k: v for k, v in r.items() if k != "update_ns"} for r in rows]
+
+        self.assertEqual(figures(), figures())
+
+    def test_refuses_unknown_names(self):
+        self.refuse(2, "natrual", "wii", "validate", "--trajectory", "natrual")
+
+
+class Place(ProgramTest):
+    def test_count_agrees_with_the_corrected_equation(self):
+        report = self.run_json("wii", "place", "--count", "100")
+        c = report["coverage"]
+        self.assertLess(abs(c["volume_counted_m3"] - c["volume_m3"]), 4 * c["volume_standard_error_m3"])
+        self.assertGreater(abs(c["volume_counted_m3"] - c["volume_as_printed_m3"]), 4 * c["volume_standard_error_m3"])
+        self.assertGreater(report["covered"], 0.9)
+
+
+if __name__ == "__main__":
+    unittest.main()
