@@ -126,7 +126,8 @@ Placement best_place(const PlaceOptions& options) {
   };
   std::vector<Candidate> candidates;
   for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
-    const Eigen::Array3d share = Eigen::Array3d(i % kGrid, i / kGrid % kGrid, i / (kGrid * kGrid)) / (kGrid - 1);
+    const Eigen::Array3i cell(i % kGrid, i / kGrid % kGrid, i / (kGrid * kGrid));
+    const Eigen::Array3d share = cell.cast<double>() / (kGrid - 1);
     const Vector3d p = options.room_min.array() + share * (options.room_max - options.room_min).array();
     if ((target - p).norm() < kDistanceMin) continue;
     const Parameters x = aimed_at(p, target);

@@ -40,9 +40,12 @@ constexpr double kGridDuration = kGridX * kGridY * kGridZ * kGridRest;
 
 Situation grid(double t) {
   const int cell = std::min(static_cast<int>(t / kGridRest), kGridX * kGridY * kGridZ - 1);
-  const double z = 0.6 + 0.7 * (cell / (kGridX * kGridY));
-  const double x = 0.1 * z * (cell % kGridX - kGridX / 2);
-  const double y = 0.12 * z * (cell / kGridX % kGridY - kGridY / 2);
+  const int column = cell % kGridX - kGridX / 2;
+  const int row = cell / kGridX % kGridY - kGridY / 2;
+  const int layer = cell / (kGridX * kGridY);
+  const double z = 0.6 + 0.7 * layer;
+  const double x = 0.1 * z * column;
+  const double y = 0.12 * z * row;
   return level_remote({x, y, z});
 }
 
