@@ -66,10 +66,12 @@ struct Window {
     for (int z = near_z.begin; z < near_z.end; ++z) {
       const std::uint64_t word = cells[static_cast<std::size_t>(z)];
       if (word == 0) continue;
-      auto& slab = row[static_cast<std::size_t>(z + kBand + kBrickSide * dz)];
+      const int slice = z + kBand + kBrickSide * dz;
+      auto& slab = row[static_cast<std::size_t>(slice)];
       for (int y = near_y.begin; y < near_y.end; ++y) {
         const std::uint32_t bits = static_cast<std::uint32_t>(word >> (8 * y)) & keep;
-        slab[static_cast<std::size_t>(y + kBand + kBrickSide * dy)] |= shift >= 0 ? bits << shift : bits >> -shift;
+        const int line = y + kBand + kBrickSide * dy;
+        slab[static_cast<std::size_t>(line)] |= shift >= 0 ? bits << shift : bits >> -shift;
       }
     }
   }
@@ -220,7 +222,7 @@ void fill_clearance(const Surface& surface, const Sides& sides, Voxmap& map) {
     const auto ordered = [&](int i, int axis) { return direction > 0 ? i : n[axis] - 1 - i; };
     const auto relax = [&](int x, int y, int z) {
       Layer& here = distance[brick_index(x, y, z, n)];
-      int best = here;
+      int best = here;  // NOLINT(bugprone-signed-char-misuse): a layer is a number, not a character
       for (int k = 0; k < 13; ++k) {
         const int qx = x + direction * (k % 3 - 1), qy = y + direction * (k / 3 % 3 - 1),
                   qz = z + direction * (k / 9 - 1);

@@ -61,7 +61,8 @@ void for_each_piece(const std::array<Vector3d, 3>& corners, Visit visit) {
 }
 
 std::size_t cell_index(int x, int y, int z) {
-  return static_cast<std::size_t>(x + 8 * y + 64 * z);
+  const int index = x + 8 * y + 64 * z;
+  return static_cast<std::size_t>(index);
 }
 
 }  // namespace
