@@ -25,7 +25,7 @@ std::uint64_t bits_to_bytes(std::uint64_t bits) {
 
 /// Calls visit(dx, dy, dz, entry) for the surface bricks among a brick and its 26 neighbours.
 template <class Visit>
-void for_each_surface_neighbour(const Surface& surface, std::size_t brick, Visit visit) {
+void for_each_surface_neighbour(const SurfaceVoxels& surface, std::size_t brick, Visit visit) {
   const Eigen::Vector3i at = brick_corner(brick, surface.bricks) / kBrickSide;
   const Eigen::Vector3i low = (at.array() - 1).max(0), high = (at.array() + 1).min(surface.bricks.array() - 1);
   for (int z = low.z(); z <= high.z(); ++z) {
@@ -143,7 +143,7 @@ class LayerWriter {
   std::size_t next_ = 0;
 };
 
-BrickMask inside_of(const Surface& surface, const Sides& sides, std::size_t brick) {
+BrickMask inside_of(const SurfaceVoxels& surface, const Sides& sides, std::size_t brick) {
   const std::uint32_t entry = surface.entry[brick];
   if (entry != kNoSurface) return sides.inside[entry];
   BrickMask mask;
@@ -153,7 +153,7 @@ BrickMask inside_of(const Surface& surface, const Sides& sides, std::size_t bric
 
 }  // namespace
 
-std::size_t assign_blocks(const Surface& surface, const Sides& sides, Voxmap& map) {
+std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map) {
   constexpr std::uint32_t kOwn = 2;
   map.brick_block.resize(surface.entry.size());
   for (std::size_t brick = 0; brick < map.brick_block.size(); ++brick) {
@@ -177,7 +177,7 @@ std::size_t assign_blocks(const Surface& surface, const Sides& sides, Voxmap& ma
   return blocks;
 }
 
-void fill_blocks(const Surface& surface, const Sides& sides, std::size_t blocks, unsigned threads, Voxmap& map) {
+void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t blocks, unsigned threads, Voxmap& map) {
   std::vector<std::uint32_t> brick_of_block(blocks);
   map.first_surface.assign(blocks, 0);
   map.surface_mask.assign(blocks, BrickMask{});
@@ -212,7 +212,7 @@ void fill_blocks(const Surface& surface, const Sides& sides, std::size_t blocks,
 
 // Chebyshev distance by two sweeps over the 13 neighbours that come before, and the 13 that come after: exact for this
 // metric, since a shortest way of king's moves can be ordered that way.
-void fill_clearance(const Surface& surface, const Sides& sides, Voxmap& map) {
+void fill_clearance(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map) {
   constexpr int kFar = 127;
   const Eigen::Vector3i& n = surface.bricks;
   std::vector<Layer>& distance = map.brick_clearance;

@@ -8,12 +8,12 @@ namespace verisim {
 
 /// Gives a block to every brick within kBand of a surface voxel, in brick order, and kOutsideBlock or kInsideBlock to
 /// the others. Fills brick_block. @returns the number of blocks, the two shared ones included
-[[nodiscard]] std::size_t assign_blocks(const Surface& surface, const Sides& sides, Voxmap& map);
+[[nodiscard]] std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map);
 
 /// Fills layers, surface_mask, first_surface and surface_count. About 1 us per block.
-void fill_blocks(const Surface& surface, const Sides& sides, std::size_t blocks, unsigned threads, Voxmap& map);
+void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t blocks, unsigned threads, Voxmap& map);
 
 /// Fills brick_clearance. About 20 ns per brick.
-void fill_clearance(const Surface& surface, const Sides& sides, Voxmap& map);
+void fill_clearance(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map);
 
 }  // namespace verisim

@@ -37,8 +37,8 @@ Pointshell::Cluster cluster_of(const Pointshell& shell, std::uint32_t begin, std
 
 }  // namespace
 
-Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const Surface& surface, const Voxmap& map,
-                           const Vector3d& reference, unsigned threads) {
+Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface,
+                           const Voxmap& map, const Vector3d& reference, unsigned threads) {
   Pointshell shell;
   shell.reference = reference;
   resize(shell, map.surface_count);

@@ -7,7 +7,7 @@
 namespace verisim {
 
 /// One point per surface voxel, in the voxmap's order; one cluster per surface brick.
-[[nodiscard]] Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const Surface& surface,
+[[nodiscard]] Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface,
                                          const Voxmap& map, const Vector3d& reference, unsigned threads);
 
 /// Keeps one point per cube of side `spacing` (a lattice from the grid's origin) and main direction of the normal (six:

@@ -39,7 +39,7 @@ bool meet(const BrickMask& a, const BrickMask& b, int axis) {
 /// Nodes are the regions within surface bricks, numbered first, and the bricks without surface voxels.
 class RegionGraph {
  public:
-  explicit RegionGraph(const Surface& surface) : surface_(surface) {
+  explicit RegionGraph(const SurfaceVoxels& surface) : surface_(surface) {
     begin_.reserve(surface.brick.size() + 1);
     for (const BrickMask& cells : surface.cells) {
       begin_.push_back(static_cast<std::uint32_t>(regions_.size()));
@@ -142,7 +142,7 @@ class RegionGraph {
     for (std::uint32_t node = begin_[entry]; node < begin_[entry + 1]; ++node) visit(node, regions_[node]);
   }
 
-  const Surface& surface_;
+  const SurfaceVoxels& surface_;
   std::vector<BrickMask> regions_;
   std::vector<std::uint32_t> begin_;            // (surface bricks + 1): first region of each
   std::vector<std::uint32_t> brick_of_region_;  // (regions)
@@ -150,7 +150,7 @@ class RegionGraph {
 };
 
 /// Winding number of every root, by node; other nodes are zero.
-std::vector<std::int32_t> winding_of_roots(const GridMesh& mesh, const BrickLists& lists, const Surface& surface,
+std::vector<std::int32_t> winding_of_roots(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface,
                                            RegionGraph& graph) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> roots;  // by raster order
   for (std::uint32_t node = 0; node < graph.nodes(); ++node) {
@@ -172,7 +172,7 @@ std::vector<std::int32_t> winding_of_roots(const GridMesh& mesh, const BrickList
 
 }  // namespace
 
-Sides find_sides(const GridMesh& mesh, const BrickLists& lists, const Surface& surface) {
+Sides find_sides(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface) {
   RegionGraph graph(surface);
   const std::vector<std::int32_t> winding = winding_of_roots(mesh, lists, surface, graph);
   Sides sides;

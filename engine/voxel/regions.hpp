@@ -13,12 +13,13 @@ namespace verisim {
 
 /// Which voxels are in the material. Inside: the winding number is positive.
 struct Sides {
-  std::vector<BrickMask> inside;    // (surface bricks)  -  as Surface::brick: inside cells; not surface, not outside
+  std::vector<BrickMask>
+      inside;  // (surface bricks)  -  as SurfaceVoxels::brick: inside cells; not surface, not outside
   std::vector<std::uint8_t> brick;  // (bricks)          -  1: a brick without surface voxel that is inside
 };
 
 /// About 2 us per surface brick and 30 ns per other brick. On a mesh that is not closed the answer is deterministic,
 /// but may differ from one region to the next.
-[[nodiscard]] Sides find_sides(const GridMesh& mesh, const BrickLists& lists, const Surface& surface);
+[[nodiscard]] Sides find_sides(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface);
 
 }  // namespace verisim

@@ -19,8 +19,9 @@ BrickMask touched_cells(const GridMesh& mesh, std::span<const std::uint32_t> tri
 
 }  // namespace
 
-Surface find_surface(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks, unsigned threads) {
-  Surface surface{.bricks = bricks, .brick = {}, .cells = {}, .entry = {}};
+SurfaceVoxels find_surface(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks,
+                           unsigned threads) {
+  SurfaceVoxels surface{.bricks = bricks, .brick = {}, .cells = {}, .entry = {}};
   const std::size_t brick_count = lists.begin.size() - 1;
   std::size_t candidates = 0;
   for (std::size_t i = 0; i < brick_count; ++i) candidates += lists.empty(i) ? 0 : 1;

@@ -8,7 +8,7 @@ namespace verisim {
 inline constexpr std::uint32_t kNoSurface = 0xFFFFFFFF;
 
 /// Bricks that hold a surface voxel, ascending, and which of their cells are surface.
-struct Surface {
+struct SurfaceVoxels {
   Eigen::Vector3i bricks = {0, 0, 0};
   std::vector<std::uint32_t> brick;  // (n)       -  brick index
   std::vector<BrickMask> cells;      // (n)       -
@@ -17,7 +17,7 @@ struct Surface {
 };
 
 /// Marks every voxel whose closed box a triangle touches (triangle_touches_box, 512 voxels at a time).
-[[nodiscard]] Surface find_surface(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks,
-                                   unsigned threads);
+[[nodiscard]] SurfaceVoxels find_surface(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks,
+                                         unsigned threads);
 
 }  // namespace verisim

@@ -15,7 +15,7 @@ GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map) {
   return result;
 }
 
-double result_bytes(const Surface& surface, std::size_t blocks) {
+double result_bytes(const SurfaceVoxels& surface, std::size_t blocks) {
   return static_cast<double>(surface.voxels) * 6 * sizeof(float) +
          static_cast<double>(surface.brick.size() * sizeof(Pointshell::Cluster)) +
          static_cast<double>(blocks) * (kBrickCells + sizeof(BrickMask) + sizeof(std::uint32_t)) +
@@ -34,7 +34,7 @@ VoxelBody voxelize(const std::string& name, const TriangleMesh& mesh, const Voxe
   map.origin = grid_origin(bounds, options.voxel_size, map.bricks);
   const GridMesh grid_mesh = in_grid_coordinates(mesh, map);
   const BrickLists lists = list_triangles_by_brick(grid_mesh, map.bricks);
-  const Surface surface = find_surface(grid_mesh, lists, map.bricks, options.threads);
+  const SurfaceVoxels surface = find_surface(grid_mesh, lists, map.bricks, options.threads);
   {
     const Sides sides = find_sides(grid_mesh, lists, surface);
     const std::size_t blocks = assign_blocks(surface, sides, map);

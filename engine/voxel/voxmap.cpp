@@ -1,6 +1,5 @@
 #include "engine/voxel/voxmap.hpp"
 
-#include <bit>
 #include <cmath>
 
 namespace verisim {
@@ -50,12 +49,7 @@ Layer Voxmap::layer_at(const Vector3d& p_B) const {
 std::int64_t Voxmap::surface_number(const Eigen::Vector3i& cell) const {
   if (!in_grid(*this, cell)) return -1;
   const Slot slot = slot_of(*this, cell);
-  const auto& mask = surface_mask[slot.block];
-  const std::size_t z = slot.cell / 64, bit = slot.cell % 64;
-  if ((mask[z] >> bit & 1) == 0) return -1;
-  std::int64_t number = first_surface[slot.block];
-  for (std::size_t i = 0; i < z; ++i) number += std::popcount(mask[i]);
-  return number + std::popcount(mask[z] & ((std::uint64_t{1} << bit) - 1));
+  return surface_number_of_slot(*this, slot.block * kBrickCells + slot.cell);
 }
 
 std::size_t Voxmap::memory_bytes() const {

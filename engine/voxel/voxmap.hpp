@@ -11,11 +11,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/base/pose.hpp"
+#include "engine/voxel/feature_sets.hpp"
 
 namespace verisim {
 
@@ -29,9 +31,6 @@ inline constexpr int kBand = 6;  ///< layers are exact (Chebyshev voxel steps fr
 /// Signed layer of a voxel: 0 = surface (a triangle passes through its closed box), -k = inside, k voxel steps
 /// (26-neighbourhood) from the nearest surface voxel, +k = outside; clamped to ±(kBand + 1).
 using Layer = std::int8_t;
-
-/// Small identity of a set of b-rep entities (hash-consed, see features.hpp). 0: the empty set.
-using FeatureSetId = std::uint16_t;
 
 /// brick_clearance counts bricks (Chebyshev steps) to the nearest brick with a surface voxel: + outside, - inside, 0
 /// has one; clamped to ±127.
@@ -59,6 +58,16 @@ struct Voxmap {                            //  shape        unit  meaning
   [[nodiscard]] std::size_t memory_bytes() const;
 };
 
+/// Number of the surface voxel that is stored at `slot` (block * 512 + cell); -1 if it is none. A few ns.
+[[nodiscard]] inline std::int64_t surface_number_of_slot(const Voxmap& map, std::uint32_t slot) {
+  const std::uint32_t block = slot / kBrickCells, z = slot % kBrickCells / 64, bit = slot % 64;
+  const auto& mask = map.surface_mask[block];
+  if ((mask[z] >> bit & 1) == 0) return -1;
+  std::int64_t number = map.first_surface[block];
+  for (std::uint32_t i = 0; i < z; ++i) number += std::popcount(mask[i]);
+  return number + std::popcount(mask[z] & ((std::uint64_t{1} << bit) - 1));
+}
+
 /// One point per surface voxel: the voxel's centre with an inward normal. Sorted by brick (z, y, x), then by cell
 /// within it, so that point i is surface voxel i of the same body's voxmap and a cluster is a run of neighbours.
 /// A normal is the mean of the faces in the voxel, weighted by their area in it (normals.hpp).
@@ -66,7 +75,7 @@ struct Pointshell {                    //  shape  unit  meaning
   std::vector<float> x, y, z;          //  (n)    m     voxel's centre relative to `reference`, body coordinates
   std::vector<float> nx, ny, nz;       //  (n)    1     inward normal
   std::vector<std::uint32_t> voxel;    //  (n)    -     surface voxel number of each point; empty: point i is voxel i
-  std::vector<FeatureSetId> features;  //  (surface_count) - b-rep entities through each SURFACE VOXEL; empty: unknown
+  std::vector<FeatureSetId> features;  //  (surface_count) - set of entities in each SURFACE VOXEL; empty: unknown
   struct Cluster {
     std::uint32_t begin, end;  //  -            points [begin, end), at most 512
     Vector3f center;           //  m            of the bounding ball, relative to `reference`
@@ -82,6 +91,7 @@ struct Pointshell {                    //  shape  unit  meaning
 struct VoxelBody {
   Voxmap voxmap;
   Pointshell shell;
+  BodyFeatures features;  ///< what shell.features refers to; empty unless association.hpp has filled it
 };
 
 }  // namespace verisim

@@ -1,0 +1,99 @@
+#include "engine/voxel/feature_sets.hpp"
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/base/hash.hpp"
+
+namespace verisim {
+
+namespace {
+
+constexpr std::size_t kFirstCapacity = 64;  // a power of two, as all that follow
+
+std::size_t hash_of(std::span<const EntityNumber> entities) {
+  return static_cast<std::size_t>(hash_bytes(entities.data(), entities.size_bytes(), 0));
+}
+
+const NamedArray& table_called(const std::string& owner, const std::vector<NamedArray>& tables, const char* name) {
+  const auto found =
+      std::find_if(tables.begin(), tables.end(), [&](const NamedArray& table) { return table.name == name; });
+  if (found == tables.end()) fail(ErrorKind::input, "'{}': table '{}' is missing; the file is damaged", owner, name);
+  return *found;
+}
+
+}  // namespace
+
+FeatureSets::FeatureSets(std::string owner, std::size_t most)
+    : owner_(std::move(owner)), most_(most), table_(kFirstCapacity, 0) {
+  VERISIM_ASSERT(most <= kMostSets);
+}
+
+std::size_t FeatureSets::place_of(std::span<const EntityNumber> entities) const {
+  const std::size_t mask = table_.size() - 1;
+  std::size_t place = hash_of(entities) & mask;
+  while (table_[place] != 0 && !std::ranges::equal((*this)[table_[place]], entities)) place = (place + 1) & mask;
+  return place;
+}
+
+FeatureSetId FeatureSets::intern(std::span<const EntityNumber> entities) {
+  if (entities.empty()) return 0;
+  VERISIM_ASSERT(std::ranges::adjacent_find(entities, std::ranges::greater_equal{}) == entities.end());
+  std::size_t place = place_of(entities);
+  if (table_[place] != 0) return table_[place];
+  if (size() > most_) {
+    fail(ErrorKind::input,
+         "'{}': more than {} different sets of faces and edges meet its voxels; give it larger voxels or brep=false",
+         owner_, most_);
+  }
+  if (2 * size() > table_.size()) {
+    grow();
+    place = place_of(entities);
+  }
+  const auto id = static_cast<FeatureSetId>(size());
+  entities_.insert(entities_.end(), entities.begin(), entities.end());
+  begin_.push_back(static_cast<std::uint32_t>(entities_.size()));
+  table_[place] = id;
+  return id;
+}
+
+void FeatureSets::grow() {
+  table_.assign(2 * table_.size(), 0);
+  for (std::size_t id = 1; id < size(); ++id) {
+    table_[place_of((*this)[static_cast<FeatureSetId>(id)])] = static_cast<FeatureSetId>(id);
+  }
+}
+
+std::size_t FeatureSets::memory_bytes() const {
+  return begin_.capacity() * sizeof(std::uint32_t) + entities_.capacity() * sizeof(EntityNumber) +
+         table_.capacity() * sizeof(FeatureSetId);
+}
+
+std::vector<NamedArray> FeatureSets::to_tables() const {
+  return {NamedArray::from<std::uint32_t>("feature_set_offsets", begin_, {begin_.size()}, "1",
+                                          "Where each set's entities begin; the last is the total"),
+          NamedArray::from<EntityNumber>("feature_set_entities", entities_, {entities_.size()}, "1",
+                                         "Entities of all sets, one after the other: faces, then edges")};
+}
+
+FeatureSets FeatureSets::from_tables(const std::string& owner, const std::vector<NamedArray>& tables,
+                                     std::size_t entity_count) {
+  const auto offsets = table_called(owner, tables, "feature_set_offsets").as<std::uint32_t>();
+  const auto entities = table_called(owner, tables, "feature_set_entities").as<EntityNumber>();
+  const auto require = [&](bool fits) {
+    if (!fits)
+      fail(ErrorKind::input, "'{}': its tables of feature sets do not fit together; the file is damaged", owner);
+  };
+  require(offsets.size() >= 2 && offsets.size() - 2 <= kMostSets && offsets.front() == 0 && offsets[1] == 0 &&
+          std::ranges::is_sorted(offsets) && offsets.back() == entities.size());
+  require(std::ranges::all_of(entities, [&](EntityNumber e) { return e < entity_count; }));
+  FeatureSets sets(owner);
+  for (std::size_t id = 1; id + 1 < offsets.size(); ++id) {
+    const std::span<const EntityNumber> set(entities.data() + offsets[id], offsets[id + 1] - offsets[id]);
+    require(std::ranges::adjacent_find(set, std::ranges::greater_equal{}) == set.end());
+    require(sets.intern(set) == id);
+  }
+  return sets;
+}
+
+}  // namespace verisim

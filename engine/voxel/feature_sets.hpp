@@ -1,0 +1,77 @@
+// Hash-consed sets of b-rep entities: each set that occurs in a part is stored once and known by a small number.
+//
+// Source: dissertation section 7.3 (feature sets of voxels, stored once; 12 bits of identity, here 16). A surface voxel
+// holds the number of the set of entities that pass through it, so two voxels of one face hold the same number, and
+// what a pair of numbers means can be remembered (memoized recognition).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/named_array.hpp"
+#include "engine/geometry/entity.hpp"
+
+namespace verisim {
+
+/// Number of a set of b-rep entities of one body. 0: the empty set.
+using FeatureSetId = std::uint16_t;
+
+/// Number of an entity of one body: below faces.size() a face, from there on edge (number - faces.size()).
+using EntityNumber = std::uint32_t;
+
+class FeatureSets {
+ public:
+  static constexpr std::size_t kMostSets = 0xFFFF;  ///< that FeatureSetId can number, besides the empty set
+
+  /// @param owner  what errors call the body
+  /// @param most   how many sets may be stored besides the empty set, up to kMostSets
+  explicit FeatureSets(std::string owner = {}, std::size_t most = kMostSets);
+
+  /// The number of the set with these entities; a new set gets the next number. About 20 ns.
+  /// Throws Error(input) that names the owner if there are more sets than may be stored: never a wrap-around.
+  /// @pre entities ascend, none twice
+  FeatureSetId intern(std::span<const EntityNumber> entities);
+
+  /// Entities of a set, ascending. Valid until the next intern().
+  /// @pre id < size()
+  [[nodiscard]] std::span<const EntityNumber> operator[](FeatureSetId id) const {
+    return {entities_.data() + begin_[id], begin_[id + std::size_t{1}] - begin_[id]};
+  }
+
+  /// Number of sets, the empty set included: every number is below it.
+  [[nodiscard]] std::size_t size() const { return begin_.size() - 1; }
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+  /// The sets as a flat table of entities and one of offsets, and back. Numbers stay.
+  [[nodiscard]] std::vector<NamedArray> to_tables() const;
+  /// Throws Error(input) if the tables do not fit together or name an entity from `entity_count` on.
+  [[nodiscard]] static FeatureSets from_tables(const std::string& owner, const std::vector<NamedArray>& tables,
+                                               std::size_t entity_count);
+
+ private:
+  [[nodiscard]] std::size_t place_of(std::span<const EntityNumber> entities) const;
+  void grow();
+
+  std::string owner_;
+  std::size_t most_;
+  std::vector<std::uint32_t> begin_ = {0, 0};  // (sets + 1): where each set begins in entities_
+  std::vector<EntityNumber> entities_;
+  std::vector<FeatureSetId> table_;  // open addressing, linear probing; 0: free (the empty set is not in it)
+};
+
+/// What the voxels of one body refer to: its entities, in the order in which they are numbered, and the sets of them.
+struct BodyFeatures {
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
+  FeatureSets sets;
+
+  [[nodiscard]] bool is_face(EntityNumber entity) const { return entity < faces.size(); }
+  [[nodiscard]] const Face& face(EntityNumber entity) const { return faces[entity]; }
+  [[nodiscard]] const Edge& edge(EntityNumber entity) const { return edges[entity - faces.size()]; }
+  [[nodiscard]] std::size_t entity_count() const { return faces.size() + edges.size(); }
+};
+
+}  // namespace verisim

@@ -1,0 +1,96 @@
+// Feature sets: what is stored comes back, each set once, and no number is ever given twice.
+#include "engine/voxel/feature_sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "engine/voxel/association.hpp"
+#include "tests/support/random_inputs.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace verisim {
+namespace {
+
+using Set = std::vector<EntityNumber>;
+
+Set random_set(test::Inputs& inputs, double largest) {
+  Set set(static_cast<std::size_t>(inputs.between(0, 5)));
+  for (EntityNumber& e : set) e = static_cast<EntityNumber>(inputs.between(0, largest));
+  std::ranges::sort(set);
+  set.erase(std::ranges::unique(set).begin(), set.end());
+  return set;
+}
+
+Set stored(const FeatureSets& sets, FeatureSetId id) {
+  return {sets[id].begin(), sets[id].end()};
+}
+
+TEST(FeatureSets, NumberSetsAsAnOrderedMapDoes) {
+  test::Inputs inputs(1);
+  FeatureSets sets;
+  std::map<Set, FeatureSetId> plain = {{{}, FeatureSetId{0}}};
+  for (int i = 0; i < 20000; ++i) {
+    const Set set = random_set(inputs, 40);
+    const auto [known, is_new] = plain.try_emplace(set, static_cast<FeatureSetId>(plain.size()));
+    ASSERT_EQ(sets.intern(set), known->second);
+  }
+  ASSERT_EQ(sets.size(), plain.size());
+  EXPECT_GT(plain.size(), 1000U);
+  for (const auto& [set, id] : plain) EXPECT_EQ(stored(sets, id), set);
+}
+
+TEST(FeatureSets, KnowTheEmptySetAsZeroFromTheStart) {
+  FeatureSets sets;
+  EXPECT_EQ(sets.size(), 1U);
+  EXPECT_TRUE(sets[0].empty());
+  EXPECT_EQ(sets.intern({}), 0);
+  EXPECT_EQ(sets.size(), 1U);
+}
+
+TEST(FeatureSets, RefuseOneSetMoreThanAllowedAndNameTheBody) {
+  FeatureSets sets("bracket", 3);
+  for (EntityNumber e = 0; e < 3; ++e) EXPECT_EQ(sets.intern(Set{e}), e + 1);
+  EXPECT_EQ(sets.intern(Set{1}), 2) << "a known set needs no new number";
+  test::expect_refused([&] { return sets.intern(Set{3}); }, "'bracket': more than 3 different sets");
+}
+
+TEST(FeatureSets, UseEveryNumberAndThenRefuseInsteadOfWrappingAround) {
+  FeatureSets sets("comb");
+  for (EntityNumber e = 0; e < FeatureSets::kMostSets; ++e) ASSERT_EQ(sets.intern(Set{e, e + 1}), e + 1);
+  EXPECT_EQ(stored(sets, 65535), (Set{65534, 65535}));
+  test::expect_refused([&] { return sets.intern(Set{7}); }, "'comb': more than 65535 different sets");
+}
+
+TEST(FeatureSets, ComeBackFromTheirTables) {
+  test::Inputs inputs(2);
+  FeatureSets sets("block");
+  for (int i = 0; i < 500; ++i) sets.intern(random_set(inputs, 20));
+  const FeatureSets back = FeatureSets::from_tables("block", sets.to_tables(), 20);
+  ASSERT_EQ(back.size(), sets.size());
+  for (std::size_t id = 0; id < sets.size(); ++id) {
+    EXPECT_EQ(stored(back, static_cast<FeatureSetId>(id)), stored(sets, static_cast<FeatureSetId>(id)));
+  }
+}
+
+TEST(FeatureSets, RefuseDamagedTables) {
+  FeatureSets sets("block");
+  sets.intern(Set{1, 2});
+  sets.intern(Set{4});
+  const auto expect_refused = [](const std::vector<NamedArray>& tables, const char* why, std::size_t entities = 9) {
+    test::expect_refused([&] { return FeatureSets::from_tables("block", tables, entities); }, why);
+  };
+  const std::vector<NamedArray> good = sets.to_tables();
+  expect_refused({good[0]}, "'feature_set_entities' is missing");
+  expect_refused(good, "do not fit together", 4);  // entity 4 of 4
+  const auto offsets = [](std::vector<std::uint32_t> v) {
+    return NamedArray::from<std::uint32_t>("feature_set_offsets", v, {v.size()}, "1", "");
+  };
+  expect_refused({offsets({0, 0, 2, 9}), good[1]}, "do not fit together");
+  expect_refused({offsets({0, 0, 2, 2, 3}), good[1]}, "do not fit together");  // the empty set twice
+}
+
+}  // namespace
+}  // namespace verisim
