@@ -1,0 +1,142 @@
+#include "engine/constraint/constraint_link.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verisim {
+namespace {
+
+constexpr double kAlphaLeast = 1e-9;  ///< below, a constraint changes no bit of a force in float
+
+Vector3d point_of(const ContactColumns& c, std::uint32_t i) {
+  return c.origin + Vector3d(c.x[i], c.y[i], c.z[i]);
+}
+
+void restore_one(const ContactColumns& c, std::uint32_t i, const Vector3d& f) {
+  c.fx[i] = static_cast<float>(f.x());
+  c.fy[i] = static_cast<float>(f.y());
+  c.fz[i] = static_cast<float>(f.z());
+}
+
+}  // namespace
+
+ConstraintLink::ConstraintLink(const EntitySets& a, const EntitySets& b, const ConstraintOptions& options)
+    : options_(options),
+      memo_(a, b, options.reduction, options.tolerances, options.limits),
+      in_frame_(memo_.constraints_max()),
+      holdings_(memo_.candidates_max()) {
+  engaged_.reserve(memo_.constraints_max());
+}
+
+void ConstraintLink::begin_frame(const Pose& X_AB) {
+  X_AB_ = X_AB;
+  pose_is_finite_ = X_AB.position.allFinite() && X_AB.rotation.coeffs().allFinite();
+  ++stamp_;
+  engaged_.clear();
+}
+
+const ActiveConstraint& ConstraintLink::active(std::uint32_t constraint) {
+  InFrame& state = in_frame_[constraint];
+  if (state.stamp == stamp_) return state.active;
+  const Constraint& c = memo_.constraint(constraint);
+  const double alpha = alignment(options_.measure, c, misalignment(c, X_AB_), options_.scales);
+  state = {.stamp = stamp_, .engaged = 0, .active = activate(c, X_AB_, alpha)};
+  return state.active;
+}
+
+void ConstraintLink::fill(Holding& h, const Candidates& found) {
+  std::array<double, Candidates::kMax> alpha = {};
+  for (std::size_t i = 0; i < found.count; ++i) alpha[i] = active(found.constraint[i]).alpha;
+  for (std::size_t i = 0; i < found.count; ++i) {
+    double left = alpha[i];
+    for (std::size_t j = 0; j < found.count; ++j) {
+      if ((found.yields_to[i] >> j & 1U) != 0) left *= 1 - alpha[j];
+    }
+    if (!(left > kAlphaLeast)) continue;
+    std::size_t place = h.count;
+    if (place == kHoldingMax) {  // three normals span everything: of more, the three best aligned
+      place = static_cast<std::size_t>(std::min_element(h.alpha.begin(), h.alpha.end()) - h.alpha.begin());
+      if (h.alpha[place] >= left) continue;
+    } else {
+      ++h.count;
+    }
+    h.constraint[place] = found.constraint[i];
+    h.alpha[place] = left;
+    h.active[place] = &in_frame_[found.constraint[i]].active;
+  }
+}
+
+const ConstraintLink::Holding& ConstraintLink::holding(std::uint32_t candidates) {
+  Holding& h = holdings_[candidates];
+  // The last place is for pairs that found no room in the memo: it belongs to another pair at every look-up.
+  const bool is_spare = candidates + 1 == holdings_.size();
+  if (h.stamp == stamp_ && !is_spare) return h;
+  h.stamp = stamp_;
+  h.count = 0;
+  if (pose_is_finite_) fill(h, memo_.candidates(candidates));
+  return h;
+}
+
+void ConstraintLink::count_engaged(const Holding& h, std::uint32_t contacts) {
+  for (std::size_t k = 0; k < h.count; ++k) {
+    InFrame& state = in_frame_[h.constraint[k]];
+    if (state.engaged == 0) {
+      engaged_.push_back({&memo_.constraint(h.constraint[k]), 0, 0});
+      state.engaged = static_cast<std::uint32_t>(engaged_.size());
+    }
+    Engaged& e = engaged_[state.engaged - 1];
+    e.alpha = std::max(e.alpha, h.alpha[k]);
+    e.contacts += contacts;
+  }
+}
+
+/// Neighbouring contacts mostly lie in voxels of the same sets: a run of equal pairs is looked up once, and counted as
+/// the hits that it is.
+template <bool restore_forces>
+RestoreResult ConstraintLink::walk(const ContactColumns& c) {
+  RestoreResult result;
+  const std::uint64_t misses_before = memo_.counts().misses();
+  for (std::uint32_t begin = 0, end = 0; begin < c.size; begin = end) {
+    const FeatureSetId a = c.set_a[begin];
+    const FeatureSetId b = c.set_b[begin];
+    for (end = begin + 1; end < c.size && c.set_a[end] == a && c.set_b[end] == b;) ++end;
+    const std::uint32_t length = end - begin;
+    const Holding& h = holding(memo_.look_up(a, b));
+    memo_.count_hits(length - 1);
+    if (h.count == 0) continue;
+    result.restored += length;
+    count_engaged(h, length);
+    for (std::size_t k = 0; k < h.count; ++k) {
+      if (h.alpha[k] <= result.alpha) continue;
+      result.alpha = h.alpha[k];
+      result.kind = h.active[k]->kind;
+    }
+    if constexpr (restore_forces) {
+      if (h.count == 1) {
+        ActiveConstraint only = *h.active[0];
+        only.alpha = h.alpha[0];
+        for (std::uint32_t i = begin; i < end; ++i) {
+          restore_one(c, i, restore(only, point_of(c, i), Vector3d(c.fx[i], c.fy[i], c.fz[i])));
+        }
+      } else {
+        for (std::uint32_t i = begin; i < end; ++i) {
+          restore_one(c, i,
+                      restore_common({h.active.data(), h.count}, {h.alpha.data(), h.count}, point_of(c, i),
+                                     Vector3d(c.fx[i], c.fy[i], c.fz[i])));
+        }
+      }
+    }
+  }
+  result.misses = static_cast<std::uint32_t>(memo_.counts().misses() - misses_before);
+  result.hits = c.size - result.misses;
+  return result;
+}
+
+RestoreResult ConstraintLink::restore_contacts(const ContactColumns& contacts) {
+  return walk<true>(contacts);
+}
+RestoreResult ConstraintLink::look_up_contacts(const ContactColumns& contacts) {
+  return walk<false>(contacts);
+}
+
+}  // namespace verisim

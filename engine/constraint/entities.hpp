@@ -1,0 +1,73 @@
+// What recognition sees of a part: its faces and edges as closed variants, and the sets of them that voxels hold.
+//
+// Part coordinates, m and rad. An entity that has no size (zero radius, zero length, a number that is not finite)
+// becomes OtherSurface or OtherCurve here: no recognizer takes those, so none needs to doubt its input.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "engine/geometry/entity.hpp"
+#include "engine/geometry/part.hpp"
+
+namespace verisim {
+
+/// Is the material inside the round shape (pin) or outside (hole)? A circle takes it from the round face that it
+/// bounds.
+enum class Role : std::uint8_t { unknown, pin, hole };
+
+/// A shape of engine/geometry/entity.hpp with the stretch of it that the part really has.
+template <typename Shape>
+struct Bounded {
+  Shape shape;
+  std::array<double, 2> u = {0, 0};  ///< a face's u, an edge's t (low, high)
+  std::array<double, 2> v = {0, 0};  ///< a face's v
+  Role role = Role::unknown;
+};
+
+using Entity =
+    std::variant<Bounded<Plane>, Bounded<Cylinder>, Bounded<Cone>, Bounded<Sphere>, Bounded<Torus>,
+                 Bounded<OtherSurface>, Bounded<Line>, Bounded<Circle>, Bounded<Ellipse>, Bounded<OtherCurve>>;
+
+/// Faces and edges as entities. O(1).
+[[nodiscard]] Entity entity_of(const Face& face);
+[[nodiscard]] Entity entity_of(const Edge& edge, std::span<const Face> faces);
+
+/// An entity declared by hand, of which no more is known than the shape (`addFeatureSet` of a scenario): a round face
+/// is taken to reach one diameter along its axis, a plane and a line half a metre to each side.
+[[nodiscard]] Entity entity_declared(const Surface& surface);
+[[nodiscard]] Entity entity_declared(const Curve& curve);
+
+/// Number of a set of entities of one part; 0 is the empty set.
+using FeatureSetId = std::uint16_t;
+
+/// All entities of a part and the sets of them that its voxels hold. Entity number i is face i while i < faces.size(),
+/// else edge i - faces.size(). Immutable once made; every access is O(1).
+class EntitySets {
+ public:
+  EntitySets() : EntitySets(std::vector<Entity>(), {}) {}
+  /// `sets[id]` lists the entity numbers of set `id`; sets[0] should be empty (no list at all: the empty set alone).
+  /// Throws Error(input) if a set names an entity that the part does not have, or if there are more sets than ids
+  /// (65,534).
+  EntitySets(const Part& part, std::span<const std::vector<std::uint32_t>> sets);
+  EntitySets(std::vector<Entity> entities, std::span<const std::vector<std::uint32_t>> sets);
+
+  [[nodiscard]] std::size_t size() const { return first_.size() - 1; }  ///< sets, the empty one included
+  [[nodiscard]] const std::vector<Entity>& entities() const { return entities_; }
+  [[nodiscard]] const Entity& entity(std::uint32_t number) const { return entities_[number]; }
+  /// Entity numbers of a set; an id beyond the last is empty.
+  [[nodiscard]] std::span<const std::uint32_t> set(FeatureSetId id) const {
+    if (id >= size()) return {};
+    return {numbers_.data() + first_[id], first_[id + 1U] - first_[id]};
+  }
+
+ private:
+  std::vector<Entity> entities_;
+  std::vector<std::uint32_t> first_;    ///< (sets + 1) where each set begins in numbers_
+  std::vector<std::uint32_t> numbers_;  ///< entity numbers, set after set
+};
+
+}  // namespace verisim

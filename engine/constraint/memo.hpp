@@ -1,0 +1,89 @@
+// Memoized recognition between the feature sets of two bodies: what two voxels are to each other, found once.
+//
+// Source: dissertation section 6.4.2. One memo per pair of bodies (per collision link). Key: the pair of set ids;
+// value: the constraints recognized between the two sets, none included (that is remembered too). Each constraint is
+// stored once, however many pairs of sets lead to it, so that what depends on the pose can be kept per constraint.
+//
+// Everything is allocated when the memo is made. Its room is what the two bodies can need, up to stated bounds; when a
+// bound is reached, results are found anew each time (`overflows` counts them), never lost or mixed up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/constraint/constraint.hpp"
+#include "engine/constraint/entities.hpp"
+#include "engine/constraint/pair_map.hpp"
+#include "engine/constraint/reduction.hpp"
+#include "engine/constraint/tolerances.hpp"
+
+namespace verisim {
+
+struct MemoLimits {
+  std::size_t pairs = 16384;       ///< of set ids; 60 bytes each
+  std::size_t constraints = 4096;  ///< 250 bytes each, with what a frame keeps of them
+};
+
+/// Deterministic counts: the same in every run of the same input.
+struct MemoCounts {
+  std::uint64_t hits = 0;
+  std::uint64_t misses_null = 0;        ///< recognized anew, and there was none
+  std::uint64_t misses_constraint = 0;  ///< recognized anew, and there was at least one
+  std::uint64_t recognitions = 0;       ///< pairs of entities looked at
+  std::uint64_t overflows = 0;          ///< misses that could not be remembered, constraints that found no room
+  [[nodiscard]] std::uint64_t misses() const { return misses_null + misses_constraint; }
+};
+
+/// What was recognized between two sets: numbers of constraints in the memo.
+struct Candidates {
+  static constexpr std::size_t kMax = 8;  ///< of different constraints at one pair of voxels; the first ones stay
+  std::array<std::uint16_t, kMax> constraint = {};
+  std::array<std::uint8_t, kMax> yields_to = {};  ///< bit j: hands over to candidate j (reduction.hpp)
+  std::uint8_t count = 0;
+};
+
+class ConstraintMemo {
+ public:
+  /// Both sets of sets must outlive the memo.
+  ConstraintMemo(const EntitySets& a, const EntitySets& b, Reduction reduction, const Tolerances& tolerances,
+                 const MemoLimits& limits = {});
+
+  /// The number of the pair's candidates. An id beyond the last set counts as the empty set. No allocation.
+  /// Cost: a hit 3 ns; a miss, about 10 ns per pair of entities.
+  [[nodiscard]] std::uint32_t look_up(FeatureSetId a, FeatureSetId b) {
+    const std::uint32_t known = pairs_.find(a, b);
+    if (known == PairMap::kAbsent) return recognize_sets(a, b);
+    ++counts_.hits;
+    return known;
+  }
+
+  [[nodiscard]] const Candidates& candidates(std::uint32_t number) const { return candidates_[number]; }
+  [[nodiscard]] const Constraint& constraint(std::uint32_t number) const { return constraints_[number]; }
+  [[nodiscard]] const MemoCounts& counts() const { return counts_; }
+  void count_hits(std::uint64_t more) { counts_.hits += more; }  ///< look-ups that the caller could spare
+
+  [[nodiscard]] std::size_t candidates_max() const { return candidates_.size(); }  ///< numbers that may occur
+  [[nodiscard]] std::size_t constraints_max() const { return constraints_.size(); }
+  [[nodiscard]] std::size_t constraints_known() const { return constraints_known_; }
+
+ private:
+  std::uint32_t recognize_sets(FeatureSetId a, FeatureSetId b);
+  Candidates candidates_of(FeatureSetId a, FeatureSetId b);
+  void add(Candidates& found, std::uint32_t constraint) const;
+  std::uint32_t number_of(std::uint32_t entity_a, std::uint32_t entity_b);
+
+  const EntitySets* a_;
+  const EntitySets* b_;
+  Reduction reduction_;
+  Tolerances tolerances_;
+  PairMap pairs_;                       ///< (set of A, set of B) -> candidates
+  PairMap known_;                       ///< (entity of A, entity of B) -> constraint, or kNone
+  std::vector<Candidates> candidates_;  ///< one more than pairs_ holds: the last is for what finds no room
+  std::vector<Constraint> constraints_;
+  std::size_t constraints_known_ = 0;
+  MemoCounts counts_;
+};
+
+}  // namespace verisim

@@ -1,0 +1,107 @@
+// What recognizers share: does a pin fit a hole, and how a side of a constraint is written down.
+#pragma once
+
+#include "engine/base/pinned_math.hpp"
+#include "engine/constraint/constraint.hpp"
+#include "engine/constraint/entities.hpp"
+#include "engine/constraint/tolerances.hpp"
+
+namespace verisim::recognizing {
+
+/// Which of two round things is the hole: the one that says so, else the one whose partner is a pin, else the larger.
+/// `neither` if both are pins or both are holes.
+[[nodiscard]] inline Side hole_of(Role a, double radius_a, Role b, double radius_b) {
+  if (a == b) {
+    if (a != Role::unknown) return Side::neither;
+    return radius_a >= radius_b ? Side::a : Side::b;
+  }
+  return a == Role::hole || b == Role::pin ? Side::a : Side::b;
+}
+
+/// A pin of radius `pin` in a hole of radius `hole` [m].
+[[nodiscard]] inline bool is_fit(double hole, double pin, const Tolerances& tolerances) {
+  const double clearance = hole - pin;
+  return clearance >= -tolerances.interference_max && clearance <= tolerances.clearance_relative_max * hole;
+}
+
+template <typename A, typename B>
+[[nodiscard]] inline bool fits(const Bounded<A>& a, const Bounded<B>& b, const Tolerances& tolerances) {
+  const double radius_a = a.shape.radius;
+  const double radius_b = b.shape.radius;
+  switch (hole_of(a.role, radius_a, b.role, radius_b)) {
+    case Side::a:
+      return is_fit(radius_a, radius_b, tolerances);
+    case Side::b:
+      return is_fit(radius_b, radius_a, tolerances);
+    case Side::neither:
+      break;
+  }
+  return false;
+}
+
+[[nodiscard]] inline double middle(const std::array<double, 2>& range) {
+  return (range[0] + range[1]) / 2;
+}
+[[nodiscard]] inline double half(const std::array<double, 2>& range) {
+  return (range[1] - range[0]) / 2;
+}
+
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Plane>& f) {
+  const Vector3d y = f.shape.normal.cross(f.shape.x_axis);
+  const Vector3d center = f.shape.point + middle(f.u) * f.shape.x_axis + middle(f.v) * y;
+  const double shorter = half(f.u) < half(f.v) ? half(f.u) : half(f.v);
+  return {center, f.shape.normal, 0, shorter, 0};
+}
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Cylinder>& f) {
+  return {f.shape.point + middle(f.v) * f.shape.direction, f.shape.direction, f.shape.radius, half(f.v), 0};
+}
+/// `point` moves to the middle of the flank, `radius` with it.
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Cone>& f) {
+  const double tangent = pinned::tan(f.shape.half_angle);
+  return {f.shape.point + middle(f.v) * f.shape.direction, f.shape.direction, f.shape.radius + middle(f.v) * tangent,
+          half(f.v), tangent};
+}
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Sphere>& f) {
+  return {f.shape.center, f.shape.direction, f.shape.radius, 0, 0};
+}
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Torus>& f) {
+  return {f.shape.center, f.shape.direction, f.shape.major_radius, f.shape.minor_radius, f.shape.minor_radius};
+}
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Line>& e) {
+  return {e.shape.point + middle(e.u) * e.shape.direction, e.shape.direction, 0, half(e.u), 0};
+}
+/// A rim says nothing of how long its pin or hole is; it stands for one radius of it to each side.
+[[nodiscard]] inline ConstraintSide side_of(const Bounded<Circle>& e) {
+  return {e.shape.center, e.shape.normal, e.shape.radius, e.shape.radius, 0};
+}
+
+/// A constraint whose two sides are a and b.
+template <typename A, typename B>
+[[nodiscard]] inline Constraint between(const A& a, const B& b, ConstraintKind kind, Pairing pairing,
+                                        NormalField field) {
+  Constraint c;
+  c.kind = kind;
+  c.pairing = pairing;
+  c.field = field;
+  c.guide = Side::neither;
+  c.pin = Side::neither;
+  c.pushes_only = false;
+  c.clearance = 0;
+  c.a = side_of(a);
+  c.b = side_of(b);
+  return c;
+}
+
+/// The same with a pin and a hole: who is who, and by how much the hole is larger.
+template <typename A, typename B>
+[[nodiscard]] inline Constraint pin_in_hole(const Bounded<A>& a, const Bounded<B>& b, ConstraintKind kind,
+                                            Pairing pairing, NormalField field) {
+  Constraint c = between(a, b, kind, pairing, field);
+  const Side hole = hole_of(a.role, c.a.radius, b.role, c.b.radius);
+  c.pin = opposite(hole);
+  c.guide = hole;
+  c.clearance = hole == Side::a ? c.a.radius - c.b.radius : c.b.radius - c.a.radius;
+  return c;
+}
+
+}  // namespace verisim::recognizing

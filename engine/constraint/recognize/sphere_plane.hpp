@@ -1,0 +1,28 @@
+// Ball on a plane: other. Leaves two slides and all three turns; only the normal is held, and only one way.
+//
+//    ( . )
+//   -------      The ball is a pin (a hole touches no plane).
+#pragma once
+
+#include "engine/constraint/recognize/fit.hpp"
+
+namespace verisim {
+
+struct SpherePlane {
+  using First = Sphere;
+  using Second = Plane;
+  static constexpr ConstraintKind kKind = ConstraintKind::other;
+
+  static bool matches(const Bounded<First>& a, const Bounded<Second>& /*b*/, const Tolerances& /*tolerances*/) {
+    return a.role == Role::pin;
+  }
+
+  static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
+    Constraint c = recognizing::between(a, b, kKind, Pairing::point_plane, NormalField::constant);
+    c.guide = Side::b;
+    c.pushes_only = true;
+    return c;
+  }
+};
+
+}  // namespace verisim

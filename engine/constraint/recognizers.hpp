@@ -1,0 +1,75 @@
+// Which pairs of entities give a constraint: the matrix, and the list that it is checked against.
+//
+// To add a pair: (1) recognize/NAME.hpp, one struct (multi_method.hpp shows its shape); (2) its include and its place
+// in the list below, and its cell in the drawing; (3) its test. The compiler compares list and drawing.
+#pragma once
+
+#include <string_view>
+
+#include "engine/constraint/multi_method.hpp"
+#include "engine/constraint/recognize/circle_circle.hpp"
+#include "engine/constraint/recognize/circle_cone.hpp"
+#include "engine/constraint/recognize/circle_cylinder.hpp"
+#include "engine/constraint/recognize/cone_cone.hpp"
+#include "engine/constraint/recognize/cylinder_cylinder.hpp"
+#include "engine/constraint/recognize/cylinder_plane.hpp"
+#include "engine/constraint/recognize/line_plane.hpp"
+#include "engine/constraint/recognize/plane_plane.hpp"
+#include "engine/constraint/recognize/sphere_cone.hpp"
+#include "engine/constraint/recognize/sphere_cylinder.hpp"
+#include "engine/constraint/recognize/sphere_plane.hpp"
+#include "engine/constraint/recognize/sphere_sphere.hpp"
+#include "engine/constraint/recognize/torus_torus.hpp"
+
+namespace verisim {
+
+using Recognizers =
+    RecognizerList<PlanePlane, CylinderCylinder, ConeCone, SphereSphere, TorusTorus, CircleCircle, CircleCylinder,
+                   CircleCone, SphereCylinder, SphereCone, SpherePlane, CylinderPlane, LinePlane>;
+
+/// Rows and columns in the order of Entity. Letters: P planar, C cylindrical, K conical, S spherical, A annular,
+/// O other; '.' the mirrored cell says it; '-' none, on purpose:
+///   cone on plane, cone on cylinder, torus on anything but a torus: contact along a line or at a point that moves with
+///     the pose, so there is no axis or centre to keep; the voxel answer stands.
+///   edges on edges (but circles): two curves cross at a point and press along the normal to both, which turns with the
+///     pose.
+///   line on round faces: a straight edge touches them at points, and the faces beside it are in the set anyway.
+///   circle on plane and sphere, ellipse, torus: rims of rims; the face beside the rim has the same normal.
+///   other: no equation is known.
+inline constexpr std::array<std::string_view, 10> kDrawing = {
+    //               plane
+    //               | cylinder
+    //               | | cone
+    //               | | | sphere
+    //               | | | | torus
+    //               | | | | | other surface
+    //               | | | | | | line
+    //               | | | | | | | circle
+    //               | | | | | | | | ellipse
+    //               | | | | | | | | | other curve
+    /* plane    */ "P O - O - - O - - -",
+    /* cylinder */ ". C - A - - - C - -",
+    /* cone     */ ". . K S - - - K - -",
+    /* sphere   */ ". . . S - - - - - -",
+    /* torus    */ ". . . . O - - - - -",
+    /* other    */ ". . . . . - - - - -",
+    /* line     */ ". . . . . . - - - -",
+    /* circle   */ ". . . . . . . C - -",
+    /* ellipse  */ ". . . . . . . . - -",
+    /* other    */ ". . . . . . . . . -",
+};
+
+namespace recognizing {
+consteval bool is_as_drawn() {
+  constexpr auto drawing = drawing_of<Recognizers, Entity>();
+  for (std::size_t i = 0; i < drawing.size(); ++i) {
+    for (std::size_t j = 0; j < drawing.size(); ++j) {
+      if (drawing[i][j] != kDrawing[i][2 * j]) return false;
+    }
+  }
+  return true;
+}
+}  // namespace recognizing
+static_assert(recognizing::is_as_drawn(), "the drawing above does not show the list of recognizers");
+
+}  // namespace verisim
