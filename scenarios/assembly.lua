@@ -3,7 +3,7 @@
 local p = params{
   model = "assembly.step",  -- STEP, BREP or a mesh file, or several with commas between them
   scale = 0,                -- metres per unit of a mesh file; 0: the file's own unit
-  part = 1,                 -- which solid is held, counted from 1 in file order, or its name
+  part = "1",               -- which solid is held, counted from 1 in file order, or its name
   direction = {0, 0, 1},    -- of pulling
   distance = 0,             -- m; 0: the held part's own size along the direction and a fifth more
   speed = 0.05,             -- m/s
@@ -22,13 +22,13 @@ end
 local held
 local low, high = {math.huge, math.huge, math.huge}, {-math.huge, -math.huge, -math.huge}
 for i, part in ipairs(parts) do
-  if i == p.part or part.name == p.part then held = i end
+  if i == tonumber(p.part) or part.name == p.part then held = i end
   for axis = 1, 3 do
     low[axis] = math.min(low[axis], part.bounds[1][axis])
     high[axis] = math.max(high[axis], part.bounds[2][axis])
   end
 end
-if not held then error(string.format("%s has %d parts, none is '%s'", p.model, #parts, tostring(p.part))) end
+if not held then error(string.format("%s has %d parts, none is '%s'", p.model, #parts, p.part)) end
 
 local largest = math.max(high[1] - low[1], high[2] - low[2], high[3] - low[3])
 local voxelsize = p.voxelsize > 0 and p.voxelsize or largest / 100

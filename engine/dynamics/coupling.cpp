@@ -10,6 +10,12 @@ double share_of(double x) {
   return x * x + 4 * x;
 }
 
+Vector3d rest_within(double sum_max, const Vector3d& spring, const Vector3d& damper) {
+  const Vector3d sum = spring + damper;
+  const double norm = sum.norm();
+  return norm > sum_max ? Vector3d(sum_max / norm * sum - spring) : damper;
+}
+
 }  // namespace
 
 Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize) {
@@ -20,6 +26,8 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   c.stiffness = stabilize ? std::min(limits.stiffness_max, bound * body.mass) : limits.stiffness_max;
   c.angular_stiffness =
       stabilize ? std::min(limits.angular_stiffness_max, bound * inertia_min) : limits.angular_stiffness_max;
+  c.force_max = limits.force_max;
+  c.torque_max = limits.torque_max;
   c.damping = 2 * std::sqrt(c.stiffness * body.mass);
   c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
   c.share = std::max(share_of(dt * std::sqrt(c.stiffness / body.mass)),
@@ -36,6 +44,11 @@ CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body, co
   f.damper = {coupling.damping * (target.v_C - body.v_C),
               R * (coupling.angular_damping_B * (R.transpose() * (target.omega - body.omega)))};
   return f;
+}
+
+Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const Wrench& damper) {
+  return {rest_within(coupling.force_max, spring.force, damper.force),
+          rest_within(coupling.torque_max, spring.torque, damper.torque)};
 }
 
 double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {

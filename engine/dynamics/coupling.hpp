@@ -7,11 +7,14 @@
 //   force  = k d + b (v_T - v_C)              d = p_T - p_C                    [m]
 //   torque = kappa e + B (omega_T - omega)    e = rotation vector of R_T R^T   [rad]
 // Critically damped: b = 2 sqrt(k m); B = 2 sqrt(kappa) I^(1/2), that is 2 sqrt(kappa I_i) about each principal axis.
+// Saturation: the sum of spring and damper is cut to force_max, torque_max (as vectors), as a clutch that slips would.
 //
 // Stability rule (ORACLES section 2: k dt^2/m + 2 b dt/m < 4). With x = dt sqrt(k/m) critical damping makes the left
 // side x^2 + 4x, the coupling's share of the budget of 4. It may take at most kCouplingShare = 2, the rest is for
 // contact: k <= (sqrt(6) - 2)^2 m/dt^2 = 0.202 m/dt^2, and the same for kappa with the smallest principal inertia.
 #pragma once
+
+#include <limits>
 
 #include "engine/base/pose.hpp"
 #include "engine/dynamics/body.hpp"
@@ -21,16 +24,20 @@ namespace verisim {
 inline constexpr double kCouplingShare = 2;
 
 struct CouplingLimits {
-  double stiffness_max = 300;          ///< N/m (maxStiffness)
-  double angular_stiffness_max = 0.1;  ///< N m/rad (maxAngularStiffness)
+  double stiffness_max = 300;                                   ///< N/m (maxStiffness)
+  double angular_stiffness_max = 0.1;                           ///< N m/rad (maxAngularStiffness)
+  double force_max = std::numeric_limits<double>::infinity();   ///< N (maxCouplingForce)
+  double torque_max = std::numeric_limits<double>::infinity();  ///< N m (maxCouplingTorque)
 };
 
 /// Constants of one coupling: of a body, a step and limits.
 struct Coupling {
-  double stiffness = 0;                           ///< k [N/m]
-  double damping = 0;                             ///< b [N s/m]
-  double angular_stiffness = 0;                   ///< kappa [N m/rad]
-  Matrix3d angular_damping_B = Matrix3d::Zero();  ///< B in body axes [N m s/rad]
+  double stiffness = 0;                                         ///< k [N/m]
+  double damping = 0;                                           ///< b [N s/m]
+  double angular_stiffness = 0;                                 ///< kappa [N m/rad]
+  Matrix3d angular_damping_B = Matrix3d::Zero();                ///< B in body axes [N m s/rad]
+  double force_max = std::numeric_limits<double>::infinity();   ///< N
+  double torque_max = std::numeric_limits<double>::infinity();  ///< N m
   double share = 0;  ///< of the stability budget of 4, at most kCouplingShare when `stabilized`
 };
 
@@ -55,6 +62,10 @@ struct CouplingForce {
 };
 [[nodiscard]] CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body,
                                            const CouplingTarget& target);
+
+/// What the damper, and the clutch that slips beyond force_max and torque_max, do together: `damper` as it is unless
+/// its sum with the spring exceeds a limit, then what leaves the sum at that limit, in the same direction.
+[[nodiscard]] Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const Wrench& damper);
 
 /// Energy stored in the springs [J].
 [[nodiscard]] double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target);

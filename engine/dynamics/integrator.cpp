@@ -67,7 +67,8 @@ double stored_before(const RigidBody& body, const Loads& loads) {
 StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
   const double energy_before = stored_before(body, loads);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
-  const Wrench damper = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.damper;
+  const Wrench damper =
+      loads.coupling == nullptr ? Wrench{} : damper_and_clutch(*loads.coupling, spring, loads.coupling_at_start.damper);
   const Vector3d force = loads.external.force + loads.contact.force + spring.force + damper.force;
   const Vector3d torque = loads.external.torque + loads.contact.torque + spring.torque + damper.torque;
   const Vector6d during =
@@ -78,28 +79,47 @@ StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
 
 namespace {
 
-/// Stiffness and damping of the coupling at this orientation.
-void coupling_matrices(const RigidBody& body, const Loads& loads, Matrix6d& K, Matrix6d& D) {
-  K.setZero();
-  D.setZero();
-  if (loads.coupling == nullptr) return;
-  const Matrix3d R = body.R_WB.toRotationMatrix();
-  K.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->stiffness);
-  D.topLeftCorner<3, 3>().diagonal().setConstant(loads.coupling->damping);
-  K.bottomRightCorner<3, 3>().diagonal().setConstant(loads.coupling->angular_stiffness);
-  D.bottomRightCorner<3, 3>() = R * loads.coupling->angular_damping_B * R.transpose();
+/// The coupling, linear in the step's end: spring and damper at its start, stiffness and damping of each.
+struct LinearCoupling {
+  Vector6d spring = Vector6d::Zero();
+  Vector6d damper = Vector6d::Zero();
+  Matrix6d K = Matrix6d::Zero();
+  Matrix6d D = Matrix6d::Zero();
+};
+
+/// A force or torque that would exceed its limit at the present velocity is a constant instead.
+LinearCoupling linearized(const RigidBody& body, const Loads& loads, double dt) {
+  LinearCoupling c;
+  if (loads.coupling == nullptr) return c;
+  const Coupling& coupling = *loads.coupling;
+  const CouplingForce& start = loads.coupling_at_start;
+  c.spring = stacked(start.spring);
+  c.damper = stacked(start.damper);
+  const Wrench ahead{start.spring.force - dt * coupling.stiffness * body.v_C,
+                     start.spring.torque - dt * coupling.angular_stiffness * body.omega};
+  const Wrench limited = damper_and_clutch(coupling, ahead, start.damper);
+  if (limited.force == start.damper.force) {
+    c.K.topLeftCorner<3, 3>().diagonal().setConstant(coupling.stiffness);
+    c.D.topLeftCorner<3, 3>().diagonal().setConstant(coupling.damping);
+  } else {
+    c.damper.head<3>() = ahead.force + limited.force - start.spring.force;
+  }
+  if (limited.torque == start.damper.torque) {
+    const Matrix3d R = body.R_WB.toRotationMatrix();
+    c.K.bottomRightCorner<3, 3>().diagonal().setConstant(coupling.angular_stiffness);
+    c.D.bottomRightCorner<3, 3>() = R * coupling.angular_damping_B * R.transpose();
+  } else {
+    c.damper.tail<3>() = ahead.torque + limited.torque - start.spring.torque;
+  }
+  return c;
 }
 
 }  // namespace
 
 StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
   const double energy_before = stored_before(body, loads);
-  Matrix6d K;
-  Matrix6d D;
-  coupling_matrices(body, loads, K, D);
+  const LinearCoupling coupling = linearized(body, loads, dt);
   const Vector6d u0 = stacked(body.v_C, body.omega);
-  const Vector6d spring0 = loads.coupling == nullptr ? Vector6d::Zero() : stacked(loads.coupling_at_start.spring);
-  const Vector6d damper0 = loads.coupling == nullptr ? Vector6d::Zero() : stacked(loads.coupling_at_start.damper);
   const Vector6d contact0 = stacked(loads.contact);
 
   Matrix6d M = Matrix6d::Zero();
@@ -108,8 +128,8 @@ StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
 
   // f1 = f0 - dt K u1 - D (u1 - u0) for each load; collected for u1.
   const auto solve = [&](bool with_contact) {
-    Matrix6d A = M + dt * D + dt * dt * K;
-    Vector6d rhs = M * u0 + dt * (stacked(loads.external) + spring0 + damper0 + D * u0);
+    Matrix6d A = M + dt * coupling.D + dt * dt * coupling.K;
+    Vector6d rhs = M * u0 + dt * (stacked(loads.external) + coupling.spring + coupling.damper + coupling.D * u0);
     if (with_contact) {
       A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
       rhs += dt * (contact0 + dt * loads.contact_drift + loads.contact_damping * u0);
@@ -129,8 +149,8 @@ StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
     u1 = solve(false);
     contact1.setZero();
   }
-  const Wrench spring = wrench_of(spring0 - dt * (K * u1));
-  const Wrench damper = wrench_of(damper0 + D * (u0 - u1));
+  const Wrench spring = wrench_of(coupling.spring - dt * (coupling.K * u1));
+  const Wrench damper = wrench_of(coupling.damper + coupling.D * (u0 - u1));
   const Motion motion = advance(body, u1, dt);
   return account(body, loads, motion, spring, damper, wrench_of(contact1), energy_before, dt);
 }

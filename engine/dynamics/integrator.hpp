@@ -7,8 +7,9 @@
 //   (M + dt D + dt^2 K) u1 = M u0 + dt (f(x0, u0) + D u0),   u = (v, omega)
 // with K, D of coupling and contact. Stable for any stiffness (backward Euler) that double precision carries, dt^2 K up
 // to about 1e13 M; it damps. One 6 x 6 Cholesky solve, a second one in a step in which contact lets go. The coupling's
-// target stands still where the handle was sampled. A contact only pushes: if its wrench at the end of the step would
-// point against the one at the start, or there was none at the start, the step is taken without it.
+// target stands still where the handle was sampled; a force or torque of it that would exceed its limit is constant. A
+// contact only pushes: if its wrench at the end of the step would point against the one at the start, or there was none
+// at the start, the step is taken without it.
 //
 // Rotation keeps angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then omega = I1^-1 L1.
 // Spin energy stays below |L|^2 / (2 I_min) whatever the speed: a fast needle cannot blow up.
@@ -35,11 +36,11 @@ struct Loads {
 /// What the loads did during the step [J, and the wrenches that were really applied].
 struct StepWork {
   Wrench coupling;          ///< on the body
-  Wrench coupling_damper;   ///< the damper's part of it
+  Wrench coupling_damper;   ///< the part of it that is not the spring's: damper, and clutch if it slips
   Wrench contact;           ///< on the body
   double contact_work = 0;  ///< work on the body
-  double damper = 0;        ///< dissipated in the coupling's damper, relative to the target's motion
-  double input = 0;         ///< put in by the hand through the damper; through the spring: see Ledger::add_jump
+  double damper = 0;        ///< dissipated in the coupling's damper and clutch, relative to the target's motion
+  double input = 0;         ///< put in by the hand through these two; through the spring: see Ledger::add_jump
   double numerical = 0;     ///< lost (or gained, < 0) by the discretization itself: see ledger.hpp
 };
 

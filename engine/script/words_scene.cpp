@@ -50,6 +50,8 @@ int define_simulation_parameters(lua_State* L) {
   if (const auto name = fields.text("hybrid")) p.hybrid = hybrid_named(L, "hybrid", *name);
   p.max_stiffness = fields.positive("maxStiffness").value_or(p.max_stiffness);
   p.max_angular_stiffness = fields.positive("maxAngularStiffness").value_or(p.max_angular_stiffness);
+  p.max_coupling_force = fields.positive("maxCouplingForce").value_or(p.max_coupling_force);
+  p.max_coupling_torque = fields.positive("maxCouplingTorque").value_or(p.max_coupling_torque);
   p.all_bodies_are_dynamic = fields.boolean("allBodiesAreDynamic").value_or(p.all_bodies_are_dynamic);
   p.contact_stiffness = fields.positive("contactStiffness").value_or(p.contact_stiffness);
   if (const auto ratio = fields.number("contactDampingRatio")) {

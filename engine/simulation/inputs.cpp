@@ -37,11 +37,10 @@ std::string options_key(const LoadOptions& o) {
 
 }  // namespace
 
-Inputs Inputs::live(const std::string& folder, std::vector<std::string> also_allowed) {
+Inputs Inputs::live(const std::string& folder, std::vector<std::string> named) {
   Inputs inputs;
   inputs.folder_ = fs::weakly_canonical(folder.empty() ? "." : folder).string();
-  inputs.allowed_.push_back(inputs.folder_);
-  for (const std::string& path : also_allowed) inputs.allowed_.push_back(fs::weakly_canonical(path).string());
+  for (const std::string& path : named) inputs.named_.push_back(fs::weakly_canonical(path).string());
   return inputs;
 }
 
@@ -61,9 +60,13 @@ Inputs Inputs::stored(std::vector<InputFile> files, std::vector<StoredModel> mod
 }
 
 std::string Inputs::resolve(const std::string& name) const {
+  // A name from the command line is meant from where the user stands, as a shell completes it.
+  const fs::path from_here = fs::weakly_canonical(name);
+  if (std::find(named_.begin(), named_.end(), from_here.string()) != named_.end()) return from_here.string();
   const fs::path given(name);
   const fs::path path = fs::weakly_canonical(given.is_absolute() ? given : fs::path(folder_) / given);
-  for (const std::string& folder : allowed_)
+  if (is_below(path, folder_)) return path.string();
+  for (const std::string& folder : named_)
     if (is_below(path, folder)) return path.string();
   fail(ErrorKind::input,
        "{}: lies outside the scenario's folder; only that folder and files named on the command line may be read",

@@ -14,9 +14,10 @@ namespace verisim {
 
 class Inputs {
  public:
-  /// Reads from disk. Relative names are looked up in `folder`; a name that leads outside `folder` (after resolving
-  /// links) is refused unless it is below one of `also_allowed` (files and folders that the command line named).
-  static Inputs live(const std::string& folder, std::vector<std::string> also_allowed);
+  /// Reads from disk. Relative names are looked up in `folder`, except those in `named` (files and folders that the
+  /// command line named, seen from the current folder). A name that leads outside `folder` (after resolving links) is
+  /// refused unless it is one of `named` or below one of them.
+  static Inputs live(const std::string& folder, std::vector<std::string> named);
   /// Serves what a run file holds and nothing else.
   static Inputs stored(std::vector<InputFile> files, std::vector<StoredModel> models);
 
@@ -37,7 +38,7 @@ class Inputs {
  private:
   bool live_ = true;
   std::string folder_;
-  std::vector<std::string> allowed_;
+  std::vector<std::string> named_;  ///< absolute
   std::vector<std::string> order_;
   std::map<std::string, std::string> contents_;
   std::vector<std::string> model_order_;

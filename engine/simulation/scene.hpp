@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,8 +25,10 @@ struct SimulationParameters {
   double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
   Hybrid hybrid = Hybrid::off;
-  double max_stiffness = 300;           ///< N/m, virtual coupling
-  double max_angular_stiffness = 0.1;   ///< N m/rad
+  double max_stiffness = 300;                                            ///< N/m, virtual coupling
+  double max_angular_stiffness = 0.1;                                    ///< N m/rad
+  double max_coupling_force = std::numeric_limits<double>::infinity();   ///< N
+  double max_coupling_torque = std::numeric_limits<double>::infinity();  ///< N m
   bool all_bodies_are_dynamic = false;  ///< false: bodies that no device holds do not move
   double contact_stiffness = 10000;     ///< N/m per contact, before the stability rule (contact/penalty.hpp)
   double contact_damping_ratio = 0.5;   ///< of the critical damping of the contact stiffness in force

@@ -28,6 +28,11 @@ class StageTimer {
   std::int64_t last_;
 };
 
+Vector3d within(double norm_max, const Vector3d& v) {
+  const double norm = v.norm();
+  return norm > norm_max ? Vector3d(norm_max / norm * v) : v;
+}
+
 }  // namespace
 
 void Simulation::step() {
@@ -155,15 +160,18 @@ void Simulation::Implementation::respond() {
 /// What the hand feels: the reaction to the coupling, about the virtual handle. The damper of a heavy body is more than
 /// a hand at the end of a sampled loop can bear: b dt/m_hand, with the arm's part, has to stay below 1 (half of the
 /// bound in ORACLES section 2). The lightest hand with its handle is taken as 0.1 kg and 0.001 kg m^2; beyond that the
-/// damper, which is there for the body's sake, is rendered weaker. The spring is rendered in full.
+/// damper, which is there for the body's sake, is rendered weaker. The spring is rendered in full; nothing beyond the
+/// coupling's limits.
 Wrench Simulation::Implementation::felt(const Body& body, const StepWork& work) const {
   constexpr double kMass = 0.1;
   constexpr double kInertia = 0.001;
   const Vector3d arm = body.loads.target.p_WC - devices[body.held_by]->reading().handle.position;
   const double linear = dt * body.coupling.damping * (1 / kMass + arm.squaredNorm() / kInertia);
   const double angular = dt * body.coupling.angular_damping_B.trace() / kInertia;
-  const Vector3d force = work.coupling.force - (1 - std::min(1.0, 1 / linear)) * work.coupling_damper.force;
-  const Vector3d torque = work.coupling.torque - (1 - std::min(1.0, 1 / angular)) * work.coupling_damper.torque;
+  const Vector3d force = within(body.coupling.force_max,
+                                work.coupling.force - (1 - std::min(1.0, 1 / linear)) * work.coupling_damper.force);
+  const Vector3d torque = within(body.coupling.torque_max,
+                                 work.coupling.torque - (1 - std::min(1.0, 1 / angular)) * work.coupling_damper.torque);
   return {-force, -torque - arm.cross(force)};
 }
 

@@ -56,6 +56,8 @@ void check(const SimulationParameters& p) {
   positive(p.frame_rate, "frameRate", "Hz");
   positive(p.max_stiffness, "maxStiffness", "N/m");
   positive(p.max_angular_stiffness, "maxAngularStiffness", "N m/rad");
+  if (!(p.max_coupling_force > 0)) fail(ErrorKind::input, "maxCouplingForce must be above 0 N");
+  if (!(p.max_coupling_torque > 0)) fail(ErrorKind::input, "maxCouplingTorque must be above 0 N m");
   positive(p.contact_stiffness, "contactStiffness", "N/m");
   if (!std::isfinite(p.contact_damping_ratio) || p.contact_damping_ratio < 0)
     fail(ErrorKind::input, "contactDampingRatio is {} but must be finite and not negative", p.contact_damping_ratio);
@@ -125,7 +127,8 @@ void Simulation::Implementation::place_bodies(const Scene& scene) {
         !description.fixed && (parameters.all_bodies_are_dynamic || grasped || (body.selectable && !devices.empty()));
     for (const Part& part : description.parts)
       for (const Vector3d& v : part.mesh.vertices) body.bounds_B.include(v);
-    const CouplingLimits limits{parameters.max_stiffness, parameters.max_angular_stiffness};
+    const CouplingLimits limits{parameters.max_stiffness, parameters.max_angular_stiffness,
+                                parameters.max_coupling_force, parameters.max_coupling_torque};
     body.coupling = make_coupling(body.rigid, dt, limits, parameters.integrator == Integrator::semi_implicit);
     bodies.push_back(std::move(body));
   }

@@ -59,6 +59,12 @@ class Scenes(ProgramTest):
         s = self.scene("assembly", "--set", "model=" + ",".join(board), "--set", "scale=0.001", "--set", "part=2")
         self.assertGreater(s["collision_frames"], 0)
 
+    def test_assembly_named_from_the_current_folder_and_a_part_by_its_name(self):
+        with open(os.path.join(SOURCE, "scenarios", "models", "peg_in_hole.step"), "rb") as model:
+            self.write("mine.step", model.read())
+        s = self.scene("assembly", "--set", "model=mine.step", "--set", "part=pin", "--duration", "0.1")
+        self.assertEqual(s["frames"], 100)
+
     def test_golden_hashes(self):
         for name, options, golden in GOLDEN:
             summary = self.scene(name, *options)

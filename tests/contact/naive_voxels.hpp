@@ -138,7 +138,8 @@ inline void close_cluster(Pointshell& shell, std::uint32_t begin) {
 
 /// One brick of the dense grid into the map (and its surface voxels into the shell). Returns whether it has any.
 inline bool add_brick(const Shape& shape, const Dense& grid, const Eigen::Vector3i& brick, VoxelBody& body) {
-  auto& [map, shell] = body;
+  Voxmap& map = body.voxmap;
+  Pointshell& shell = body.shell;
   std::array<Layer, kBrickCells> cells;
   std::array<std::uint64_t, 8> mask{};
   const auto begin = static_cast<std::uint32_t>(shell.size());
@@ -169,7 +170,8 @@ inline bool add_brick(const Shape& shape, const Dense& grid, const Eigen::Vector
 
 inline VoxelBody voxelize(const Shape& shape, double voxel_size) {
   VoxelBody body;
-  auto& [map, shell] = body;
+  Voxmap& map = body.voxmap;
+  Pointshell& shell = body.shell;
   map.voxel_size = voxel_size;
   for (int i = 0; i < 3; ++i) {
     map.bricks[i] = static_cast<int>(std::ceil((2 * shape.half_sides[i] / voxel_size + 2) / kBrickSide)) + 2;

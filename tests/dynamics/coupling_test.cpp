@@ -118,6 +118,22 @@ TEST(CouplingForce, PullsAndTurnsTowardsTheTarget) {
   EXPECT_LE(std::abs(coupling_energy(c, body, target) - (0.5 * 300 * 1e-4 + 0.5 * 0.1 * 0.04)), tolerance(1e-16));
 }
 
+// Far from its target a body feels exactly the limits, towards the target, whichever integrator moves it.
+TEST(CouplingForce, IsCutToItsLimits) {
+  CouplingLimits limits{300, 0.1};
+  limits.force_max = 2;
+  limits.torque_max = 0.004;
+  for (const auto step : {step_semi_implicit, step_implicit}) {
+    RigidBody body = brick(2, {1, 2, 3});
+    const Coupling c = make_coupling(body, 1e-3, limits, true);
+    const CouplingTarget target = resting_at({{0.3, 0.4, 0}, rotation_from_vector({0, 0, 1.5})});
+    const StepWork work = step(body, held(c, body, target), 1e-3);
+    EXPECT_LE((work.coupling.force - Vector3d(1.2, 1.6, 0)).norm(), tolerance(1e-13));
+    EXPECT_LE((work.coupling.torque - Vector3d(0, 0, 0.004)).norm(), tolerance(1e-16));
+    EXPECT_LE((body.v_C - 1e-3 / 2 * Vector3d(1.2, 1.6, 0)).norm(), tolerance(1e-15));
+  }
+}
+
 // The damper's axes turn with the body: the torque in body axes does not depend on where the pair stands in the world.
 TEST(CouplingForce, DoesNotDependOnTheWorldsAxes) {
   for (const std::uint64_t seed : seeds(200)) {

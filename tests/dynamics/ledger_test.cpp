@@ -20,7 +20,8 @@ using Step = StepWork (*)(RigidBody&, const Loads&, double);
 
 struct World {
   bool gravity = false, held = false, wall = false;
-  double spin = 0;  ///< rad/s
+  double spin = 0;     ///< rad/s
+  bool slips = false;  ///< the coupling is limited to a fraction of what the hand pulls with
 };
 
 /// What is left of one second of that world.
@@ -29,6 +30,7 @@ struct Outcome {
   double turnover = 0;   ///< the energies that went through, to judge the residual against
   double numerical = 0;  ///< at the end
   double dissipated = 0, contact = 0;
+  double pull = 0;  ///< largest force of the coupling
 };
 
 Loads loads_of(const World& world, const RigidBody& body, const Coupling& coupling, const CouplingTarget& target) {
@@ -63,7 +65,9 @@ Outcome live(const World& world, Step step, double dt) {
   RigidBody body = brick(0.5, {0.1, 0.2, 0.3});
   body.v_C = {0.3, -0.2, -0.4};
   body.omega = world.spin * Vector3d(0.5, 0.7, -0.5);
-  const Coupling coupling = make_coupling(body, 1e-3, {300, 0.1}, true);
+  CouplingLimits limits{300, 0.1};
+  if (world.slips) limits.force_max = 2, limits.torque_max = 0.004;
+  const Coupling coupling = make_coupling(body, 1e-3, limits, true);
   const auto handle = [&](double t) {  // a hand that draws a curve and turns
     CouplingTarget target;
     target.p_WC = {0.1 * std::sin(3 * t), 0.05 * std::cos(2 * t), -0.05 * std::sin(4 * t)};
@@ -79,7 +83,9 @@ Outcome live(const World& world, Step step, double dt) {
   for (int i = 0; i < std::lround(1 / dt); ++i) {
     const CouplingTarget target = handle(i * dt);
     ledger.add_jump(energy_of(world, body, coupling, target).sum() - energy.sum());
-    ledger.add(step(body, loads_of(world, body, coupling, target), dt));
+    const StepWork work = step(body, loads_of(world, body, coupling, target), dt);
+    ledger.add(work);
+    outcome.pull = std::max(outcome.pull, work.coupling.force.norm());
     energy = energy_of(world, body, coupling, target);
     outcome.residual = std::max(outcome.residual, std::abs(ledger.residual(energy)));
     outcome.turnover = std::max({outcome.turnover, energy.kinetic, energy.coupling, std::abs(energy.gravity)});
@@ -108,6 +114,14 @@ TEST_P(LedgerOf, ClosesToRoundingWhateverActs) {
     ASSERT_GT(o.turnover, 0.01);
     EXPECT_LE(o.residual, tolerance(1000 * 20 * 0x1p-53 * o.turnover));
   }
+}
+
+TEST_P(LedgerOf, ClosesWhileTheClutchSlips) {
+  const Outcome tight = live({.held = true, .spin = 5}, GetParam(), 1e-3);
+  const Outcome slipping = live({.held = true, .spin = 5, .slips = true}, GetParam(), 1e-3);
+  EXPECT_LE(slipping.residual, tolerance(1000 * 20 * 0x1p-53 * slipping.turnover));
+  EXPECT_GT(tight.pull, 3) << "the limit would never be reached";
+  EXPECT_LE(slipping.pull, 2 * (1 + 1e-3));
 }
 
 // First order: ten times smaller steps leave about a tenth; with room for impacts that fall otherwise between steps.

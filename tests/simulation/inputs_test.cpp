@@ -49,6 +49,15 @@ TEST_F(InputsTest, ReadsOutsideWhatTheCommandLineNamed) {
   EXPECT_EQ(inputs.read((top_ / "outside.txt").string()), "outside");
 }
 
+TEST_F(InputsTest, FindsARelativeNameOfTheCommandLineWhereTheUserStands) {
+  const fs::path before = fs::current_path();
+  fs::current_path(top_);
+  Inputs inputs = Inputs::live(top_ / "scene", {"outside.txt"});
+  EXPECT_EQ(inputs.read("outside.txt"), "outside");
+  EXPECT_EQ(inputs.read("inside.txt"), "inside");
+  fs::current_path(before);
+}
+
 TEST_F(InputsTest, AFolderWhoseNameBeginsAlikeIsOutside) {
   fs::create_directories(top_ / "scene2");
   std::ofstream(top_ / "scene2" / "x.txt") << "x";
