@@ -17,12 +17,13 @@ MAY_INCLUDE = {
     "voxel": "base geometry",
     "contact": "base geometry voxel",
     "constraint": "base geometry",
+    "exact": "base geometry",
     "dynamics": "base",
     "device": "base",
     "robot": "base",
     "wii": "base",
     "record": "base",
-    "simulation": "base geometry voxel contact constraint dynamics device robot wii record",
+    "simulation": "base geometry voxel contact constraint exact dynamics device robot wii record",
     "script": "base geometry device robot wii record simulation",
 }
 
@@ -51,7 +52,7 @@ MAY_READ_THE_CLOCK = {
 }
 
 # Folders whose numbers enter the state, and the files there that use the C library's functions for an error's text.
-IN_THE_STATE = ("base", "voxel", "contact", "constraint", "dynamics", "device", "robot", "simulation")
+IN_THE_STATE = ("base", "voxel", "contact", "constraint", "exact", "dynamics", "device", "robot", "simulation")
 OUT_OF_THE_STATE = {"engine/base/pinned_math.cpp", "engine/voxel/limits.cpp"}
 
 

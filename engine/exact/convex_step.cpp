@@ -1,0 +1,273 @@
+#include "engine/exact/convex_step.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "engine/base/error.hpp"
+
+namespace verisim::exact {
+namespace {
+
+constexpr int kIterationsMax = 60;
+/// Largest matrix of unknowns, on the stack.
+constexpr int kUnknownsMax = 6 * ConvexStep::kBodiesMax;
+using MatrixN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kUnknownsMax, kUnknownsMax>;
+using VectorN = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kUnknownsMax, 1>;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Solves A x = b for a symmetric positive definite A whose lower triangle is given, in place of b. Written out: for
+/// six unknowns a general routine takes twice as long.
+void solve_in_place(double A[6][6], double b[6]) {
+  double inverse[6];
+  for (int j = 0; j < 6; ++j) {
+    double pivot = A[j][j];
+    for (int k = 0; k < j; ++k) pivot -= A[j][k] * A[j][k];
+    inverse[j] = 1 / std::sqrt(pivot);
+    for (int i = j + 1; i < 6; ++i) {
+      double sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
+      A[i][j] = sum * inverse[j];
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < i; ++k) b[i] -= A[i][k] * b[k];
+    b[i] *= inverse[i];
+  }
+  for (int i = 5; i >= 0; --i) {
+    for (int k = i + 1; k < 6; ++k) b[i] -= A[k][i] * b[k];
+    b[i] *= inverse[i];
+  }
+}
+
+}  // namespace
+
+ConvexStep::ConvexStep(std::size_t rows_max) {
+  rows_.reserve(rows_max);
+  bodies_.reserve(kBodiesMax);
+}
+
+void ConvexStep::clear() {
+  rows_.clear();
+  bodies_.clear();
+  left_out_ = 0;
+}
+
+int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess) {
+  VERISIM_ASSERT(bodies_.size() < kBodiesMax);
+  bodies_.push_back({p_WC, M, u0, guess, Vector6d::Zero()});
+  return static_cast<int>(bodies_.size()) - 1;
+}
+
+void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second) {
+  VERISIM_ASSERT(first != second);
+  const auto rate = [&](const ContactRow& row, int body, double sign) {
+    Vector6d J;
+    J << sign * row.normal, sign * (row.point - bodies_[at(body)].p_WC).cross(row.normal);
+    return J;
+  };
+  for (const ContactRow& from : rows) {
+    if (rows_.size() == rows_.capacity()) {
+      ++left_out_;
+      continue;
+    }
+    Row& row = rows_.emplace_back();
+    row.g = from.gap;
+    row.k = from.stiffness;
+    row.body = {second, first};
+    if (second != kFixed) row.J[0] = rate(from, second, 1);
+    if (first != kFixed) row.J[1] = rate(from, first, -1);
+    if (second != kFixed) continue;
+    std::swap(row.body[0], row.body[1]);
+    std::swap(row.J[0], row.J[1]);
+  }
+}
+
+void ConvexStep::place_rows(double dt) {
+  for (Row& row : rows_) {
+    double rate = row.J[0].dot(bodies_[at(row.body[0])].u);
+    if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].u);
+    row.z = row.g + dt * rate;
+  }
+}
+
+double ConvexStep::cost() const {
+  double sum = 0;
+  for (const Body& body : bodies_) sum += (body.u - body.u0).dot(body.M * (body.u - body.u0));
+  for (const Row& row : rows_) {
+    const double overlap = std::min(0.0, row.z);
+    sum += row.k * overlap * overlap;
+  }
+  return 0.5 * sum;
+}
+
+/// From the cheaper of the two: the guess or the motion without contact.
+void ConvexStep::start(double dt) {
+  place_rows(dt);
+  const double of_guess = cost();
+  for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 the guess
+  place_rows(dt);
+  double of_free = 0;
+  for (const Row& row : rows_) of_free += 0.5 * row.k * std::min(0.0, row.z) * std::min(0.0, row.z);
+  const bool free_is_better = of_free <= of_guess;
+  for (Body& body : bodies_) {
+    std::swap(body.u, body.u0);
+    if (free_is_better) body.u = body.u0;
+  }
+  if (!free_is_better) place_rows(dt);
+}
+
+/// The Newton direction of one body. False if nothing is left to do.
+bool ConvexStep::find_direction_of_one(double dt) {
+  Body& body = bodies_[0];
+  const Vector6d push = body.M * (body.u - body.u0);
+  double A[6][6];
+  double b[6];
+  for (int i = 0; i < 6; ++i) {
+    b[i] = -push[i];
+    for (int j = 0; j <= i; ++j) A[i][j] = body.M(i, j);
+  }
+  const double square = dt * dt;
+  for (const Row& row : rows_) {
+    if (row.z >= 0) continue;
+    const double* J = row.J[0].data();
+    const double force = dt * row.k * row.z;
+    const double stiff = square * row.k;
+    for (int i = 0; i < 6; ++i) {
+      b[i] -= force * J[i];
+      const double scaled = stiff * J[i];
+      for (int j = 0; j <= i; ++j) A[i][j] += scaled * J[j];
+    }
+  }
+  solve_in_place(A, b);
+  for (int i = 0; i < 6; ++i) body.direction[i] = b[i];
+  return !body.direction.isZero(0);
+}
+
+bool ConvexStep::find_direction_of_all(double dt) {
+  const int n = 6 * static_cast<int>(bodies_.size());
+  MatrixN A = MatrixN::Zero(n, n);
+  VectorN b(n);
+  for (int i = 0; i < n; i += 6) {
+    const Body& body = bodies_[at(i / 6)];
+    A.block<6, 6>(i, i) = body.M;
+    b.segment<6>(i) = body.M * (body.u0 - body.u);
+  }
+  for (const Row& row : rows_) {
+    if (row.z >= 0) continue;
+    const double stiff = dt * dt * row.k;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (row.body[i] == kFixed) continue;
+      b.segment<6>(6 * row.body[i]) -= dt * row.k * row.z * row.J[i];
+      for (std::size_t j = 0; j < 2; ++j) {
+        if (row.body[j] == kFixed) continue;
+        A.block<6, 6>(6 * row.body[i], 6 * row.body[j]) += stiff * row.J[i] * row.J[j].transpose();
+      }
+    }
+  }
+  const VectorN x = A.llt().solve(b);
+  for (int i = 0; i < n; i += 6) bodies_[at(i / 6)].direction = x.segment<6>(i);
+  return !x.isZero(0);
+}
+
+/// How everything changes along the direction.
+void ConvexStep::change_along(double dt) {
+  inertia_cost_ = inertia_slope_ = inertia_bend_ = 0;
+  for (const Body& body : bodies_) {
+    const Vector6d off = body.u - body.u0;
+    const Vector6d push = body.M * body.direction;
+    inertia_cost_ += 0.5 * off.dot(body.M * off);
+    inertia_slope_ += off.dot(push);
+    inertia_bend_ += body.direction.dot(push);
+  }
+  for (Row& row : rows_) {
+    double rate = row.J[0].dot(bodies_[at(row.body[0])].direction);
+    if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].direction);
+    row.dz = dt * rate;
+  }
+}
+
+ConvexStep::Along ConvexStep::along(double t) const {
+  Along sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_bend_), inertia_slope_ + t * inertia_bend_};
+  for (const Row& row : rows_) {
+    const double overlap = std::min(0.0, row.z + t * row.dz);
+    sum.cost += 0.5 * row.k * overlap * overlap;
+    sum.slope += row.k * overlap * row.dz;
+  }
+  return sum;
+}
+
+/// Newton's decrement against the cost: what is left to win is lost in rounding.
+bool ConvexStep::gains_nothing() const {
+  const Along begin = along(0);
+  return -begin.slope <= 1e-15 * begin.cost;
+}
+
+/// The whole step if it lowers the cost enough, else about where the cost is least: its slope rises with t.
+double ConvexStep::step_length() const {
+  constexpr double kEnough = 1e-4;
+  constexpr double kNear = 0.1;  // of the slope at the start
+  const Along begin = along(0);
+  const Along end = along(1);
+  if (end.cost <= begin.cost + kEnough * begin.slope) return 1;
+  double low = 0;
+  double high = 1;
+  double slope_low = begin.slope;
+  double slope_high = end.slope;
+  double t = 1;
+  for (int i = 0; i < 20; ++i) {  // false position, with the Illinois rule
+    t = low + (high - low) * (slope_low / (slope_low - slope_high));
+    const double slope = along(t).slope;
+    if (std::abs(slope) <= kNear * std::abs(begin.slope)) break;
+    if (slope < 0) {
+      low = t;
+      slope_low = slope;
+      slope_high *= 0.5;
+    } else {
+      high = t;
+      slope_high = slope;
+      slope_low *= 0.5;
+    }
+  }
+  return t;
+}
+
+/// Goes along the direction. True if the same rows act before and after.
+bool ConvexStep::advance(double t) {
+  for (Body& body : bodies_) body.u += t * body.direction;
+  bool same = true;
+  for (Row& row : rows_) {
+    const double before = row.z;
+    row.z += t * row.dz;
+    same = same && (before < 0) == (row.z < 0);
+  }
+  return same;
+}
+
+int ConvexStep::solve(double dt) {
+  if (bodies_.empty()) return 0;
+  start(dt);
+  for (int i = 0; i < kIterationsMax; ++i) {
+    const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt) : find_direction_of_all(dt);
+    if (!moves) return i;
+    change_along(dt);
+    if (gains_nothing()) return i;
+    const double t = step_length();
+    const bool same = advance(t);
+    // With the same rows the cost is one parabola, and its Newton step ends at its minimum.
+    if (same && t == 1) return i + 1;
+  }
+  return kIterationsMax;
+}
+
+Wrench ConvexStep::wrench(int body) const {
+  Vector6d sum = Vector6d::Zero();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    for (std::size_t side = 0; side < 2; ++side)
+      if (rows_[i].body[side] == body) sum += force(i) * rows_[i].J[side];
+  }
+  return {sum.head<3>(), sum.tail<3>()};
+}
+
+}  // namespace verisim::exact

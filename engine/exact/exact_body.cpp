@@ -1,0 +1,194 @@
+#include "engine/exact/exact_body.hpp"
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
+#include "engine/exact/feature_maker.hpp"
+
+namespace verisim::exact {
+namespace {
+
+/// Below this sine of the angle between its two faces an edge is smooth: 0.5 degrees.
+constexpr double kSmooth = 0.0087;
+/// What a tessellation may leave out of a round face's box, as a share of its radius: chords of 0.5 rad.
+constexpr double kSagitta = 0.03;
+
+/// The triangles of one part, by face.
+class FaceTriangles {
+ public:
+  FaceTriangles(const TriangleMesh& mesh, std::size_t faces) : first_(faces + 1, 0) {
+    for (const std::uint32_t f : mesh.face_of_triangle)
+      if (f < faces) ++first_[f + 1];
+    for (std::size_t f = 0; f < faces; ++f) first_[f + 1] += first_[f];
+    triangles_.resize(first_[faces]);
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t t = 0; t < mesh.face_of_triangle.size(); ++t) {
+      const std::uint32_t f = mesh.face_of_triangle[t];
+      if (f < faces) triangles_[next[f]++] = t;
+    }
+  }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t face) const {
+    return std::span(triangles_).subspan(first_[face], first_[face + 1] - first_[face]);
+  }
+
+ private:
+  std::vector<std::uint32_t> triangles_, first_;
+};
+
+/// Into which direction a face lies from a point of its border: towards the third corner of the triangle whose side is
+/// nearest to the point.
+Vector3d towards_face(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const Vector3d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  Vector3d towards = Vector3d::Zero();
+  for (const std::uint32_t t : triangles) {
+    const auto& v = mesh.triangles[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3d& a = mesh.vertices[v[i]];
+      const Vector3d ab = mesh.vertices[v[(i + 1) % 3]] - a;
+      const double length = ab.squaredNorm();
+      if (length == 0) continue;
+      const double s = std::clamp(ab.dot(p - a) / length, 0.0, 1.0);
+      const double distance = (a + s * ab - p).squaredNorm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      towards = mesh.vertices[v[(i + 2) % 3]] - p;
+    }
+  }
+  return towards;
+}
+
+void set_extent(ExactEdge& made, const Edge& edge) {
+  const double width = 0.5 * (edge.t_range[1] - edge.t_range[0]);
+  const double center = 0.5 * (edge.t_range[0] + edge.t_range[1]);
+  if (const auto* line = std::get_if<Line>(&edge.curve)) {
+    made.extent = ExactEdge::Extent::line;
+    made.middle = line->point + center * line->direction;
+    made.axis = line->direction;
+    made.half = width;
+  } else if (const auto* circle = std::get_if<Circle>(&edge.curve); circle != nullptr && width < 0.999 * pinned::kPi) {
+    made.extent = ExactEdge::Extent::arc;
+    made.middle = circle->center;
+    made.normal = circle->normal;
+    made.axis = pinned::cos(center) * circle->x_axis + pinned::sin(center) * circle->normal.cross(circle->x_axis);
+    made.half = pinned::cos(width);
+  }
+}
+
+/// Takes one part into a body, entity by entity.
+class PartTaker {
+ public:
+  PartTaker(ExactBody& body, const Part& part)
+      : body_(body),
+        part_(part),
+        triangles_(part.mesh, part.faces.size()),
+        face_base_(static_cast<std::uint32_t>(body.faces.size())),
+        points_(part.edges.size()),
+        borders_(part.faces.size()) {
+    for (std::size_t f = 0; f < part.faces.size(); ++f) take_surface(f);
+    for (std::size_t e = 0; e < part.edges.size(); ++e) take_edge(e);
+    for (std::size_t f = 0; f < part.faces.size(); ++f) take_trim(f);
+    add_corner_features(body, ends_);
+  }
+
+ private:
+  void take_surface(std::size_t f) {
+    ExactFace& face = body_.faces.emplace_back();
+    for (const std::uint32_t t : triangles_.of(f))
+      for (const std::uint32_t v : part_.mesh.triangles[t]) face.bounds.include(part_.mesh.vertices[v]);
+    if (triangles_.of(f).empty()) return;
+    face.surface = PreciseSurface::from(part_.faces[f].surface);
+    if (!face.surface || face.surface->kind() == PreciseSurface::Kind::plane) return;
+    const Vector3d more = Vector3d::Constant(kSagitta * face.bounds.size().maxCoeff());
+    face.bounds.min -= more;
+    face.bounds.max += more;
+  }
+
+  [[nodiscard]] const PreciseSurface* surface_of(std::uint32_t face) const {
+    const auto& surface = body_.faces[face].surface;
+    return surface ? &*surface : nullptr;
+  }
+
+  void take_edge(std::size_t e) {
+    const Edge& edge = part_.edges[e];
+    if (edge.faces.size() != 2 || edge.faces[0] == edge.faces[1]) return;  // a seam: the surface goes on
+    ExactEdge made;
+    made.faces = {face_base_ + edge.faces[0], face_base_ + edge.faces[1]};
+    const PreciseSurface* surface[2] = {surface_of(made.faces[0]), surface_of(made.faces[1])};
+    points_[e] = points_along(edge, body_.options.spacing, surface[0], surface[1]);
+    if (points_[e].size() < 2) return;
+    const auto tangent = [&](std::size_t i) {
+      const std::size_t last = points_[e].size() - 1;
+      return Vector3d((points_[e][std::min(i + 1, last)] - points_[e][i == 0 ? 0 : i - 1]).normalized());
+    };
+    const std::size_t middle = points_[e].size() / 2;
+    std::array<double, 2> sign{1, 1};  // makes tangent x normal point out of the face, all along the edge
+    const auto out_of = [&](std::size_t i, std::size_t side) {
+      const Vector3d normal = surface[side]->at(points_[e][i]).normal;
+      return Vector3d(sign[side] * tangent(i).cross(normal).normalized());
+    };
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (surface[side] == nullptr) continue;
+      const Vector3d inward = towards_face(part_.mesh, triangles_.of(edge.faces[side]), points_[e][middle]);
+      if (inward.dot(out_of(middle, side)) > 0) sign[side] = -1;
+    }
+    set_extent(made, edge);
+    if (surface[0] != nullptr && surface[1] != nullptr) {
+      const double turn = out_of(middle, 0).dot(surface[1]->at(points_[e][middle]).normal);
+      if (turn > kSmooth) made.fold = Fold::convex;
+      if (turn < -kSmooth) made.fold = Fold::concave;
+    }
+    for (std::size_t i = 0; made.fold == Fold::smooth && i < points_[e].size(); ++i) {
+      ExactEdge::Mark& mark = made.marks.emplace_back();
+      mark.point = points_[e][i];
+      for (std::size_t side = 0; side < 2; ++side)
+        mark.out_of[side] = surface[side] == nullptr ? Vector3d(Vector3d::Zero()) : out_of(i, side);
+    }
+    const auto number = static_cast<std::uint32_t>(body_.edges.size());
+    for (const std::uint32_t f : edge.faces) borders_[f].push_back({number, points_[e]});
+    if (surface[0] != nullptr || surface[1] != nullptr) add_edge_features(body_, edge, made, points_[e], sign);
+    const std::vector<Vector3d>& p = points_[e];
+    ends_.push_back({p.front(), tangent(0), made.fold});
+    ends_.push_back({p.back(), -tangent(p.size() - 1), made.fold});
+    body_.edges.push_back(std::move(made));
+  }
+
+  void take_trim(std::size_t f) {
+    const auto number = face_base_ + static_cast<std::uint32_t>(f);
+    ExactFace& face = body_.faces[number];
+    if (!face.surface) return;
+    face.trim.emplace(*face.surface, part_.mesh, triangles_.of(f), borders_[f], body_.options.spacing);
+    ++body_.known_faces;
+    add_face_features(body_, part_.faces[f], number);
+  }
+
+  ExactBody& body_;
+  const Part& part_;
+  FaceTriangles triangles_;
+  std::uint32_t face_base_;
+  std::vector<std::vector<Vector3d>> points_;  ///< along each edge
+  std::vector<std::vector<Trim::Border>> borders_;
+  std::vector<EdgeEnd> ends_;
+};
+
+}  // namespace
+
+bool ExactEdge::speaks_for(const Vector3d& p) const {
+  const Vector3d d = p - middle;
+  if (extent == Extent::line) return std::abs(axis.dot(d)) <= half;
+  if (extent == Extent::arc) return axis.dot(d) >= half * (d - normal.dot(d) * normal).norm();
+  return true;
+}
+
+ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {
+  VERISIM_ASSERT(options.spacing > 0);
+  for (const Part& part : parts) PartTaker(*this, part);
+  std::vector<Bounds> boxes;
+  for (const ExactFace& face : faces) boxes.push_back(face.surface ? face.bounds : Bounds());
+  face_tree = BoxTree(boxes);
+  boxes.clear();
+  for (const Group& group : groups) boxes.push_back(bounds_of(*this, group));
+  group_tree = BoxTree(boxes);
+}
+
+}  // namespace verisim::exact

@@ -1,0 +1,113 @@
+// What a body collides by where its entities are known precisely: faces with their surfaces, trims and neighbours, and
+// the features that can touch another body's faces first. Made once, at load; constant afterwards.
+//
+// Body coordinates [m]. A feature is a curve (or point) of the body that carries a ball of some radius: an edge or a
+// corner (radius 0), the middle of a ball, the ring of a torus, the axis of a pin. Along straight lines the distance to
+// a plane, a hole or a conical hole is linear or concave, so where a pin's or a cone's side meets one of those, the
+// side's ends decide: its edges are enough. What is left are round outsides against round outsides, and balls and
+// rings.
+//
+// A curve is cut into segments no longer than the spacing. In the search a segment's sample slides along its own
+// segment to the nearest place (exact_link.hpp); up to kGroup neighbouring segments make one row, that of the nearest
+// of them.
+//
+// Stiffness: an edge is a line of springs with `line_stiffness` per metre, a point counts as `point_length` of it. So
+// the sum over samples tends to an integral over the line as the spacing shrinks. The default is that of steel in line
+// contact (half of E / (1 - nu^2) = 2.3e11 N/m^2).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/exact/box_tree.hpp"
+#include "engine/exact/trim.hpp"
+#include "engine/geometry/part.hpp"
+
+namespace verisim::exact {
+
+struct BodyOptions {
+  double spacing = 0;            ///< m, > 0: longest segment; usually the voxel size
+  double line_stiffness = 1e11;  ///< N/m per m
+  double point_length = 0.004;   ///< m
+};
+
+/// How the material lies at an edge.
+enum class Fold : std::uint8_t { convex, concave, smooth };
+
+/// An edge between two faces, as each of them sees it.
+struct ExactEdge {
+  std::array<std::uint32_t, 2> faces{};  ///< numbers in ExactBody::faces
+  Fold fold = Fold::smooth;
+  /// Along the edge's direction a point may be beyond the edge's end, and then the edge says nothing about it. Lines:
+  /// |axis . (p - middle)| <= half. Arcs of circles: axis . (p - middle) >= half |p - middle|, middle the circle's
+  /// centre and p taken in its plane. Others and full circles always speak.
+  enum class Extent : std::uint8_t { line, arc, all };
+  Extent extent = Extent::all;
+  Vector3d middle = Vector3d::Zero(), axis = Vector3d::Zero(), normal = Vector3d::Zero();
+  double half = 0;
+  [[nodiscard]] bool speaks_for(const Vector3d& p) const;
+
+  /// Smooth edges only: points along the edge with, per point, the directions out of either face across the edge.
+  struct Mark {
+    Vector3d point;
+    std::array<Vector3d, 2> out_of;
+  };
+  std::vector<Mark> marks;
+};
+
+struct ExactFace {
+  std::optional<PreciseSurface> surface;  ///< none: another surface; the voxels answer for it
+  std::optional<Trim> trim;               ///< with the surface
+  Bounds bounds;
+};
+
+/// A curve and the ball that it carries.
+struct Feature {
+  enum class Kind : std::uint8_t { line, arc, point };
+  Kind kind = Kind::point;
+  /// line: p(t) = origin + t x.  arc: p(t) = origin + cos t x + sin t y (circles and ellipses).  point: origin.
+  Vector3d origin = Vector3d::Zero(), x = Vector3d::Zero(), y = Vector3d::Zero();
+  double radius = 0;                 ///< m, of the ball
+  double half_width = 0;             ///< of a segment, in t
+  double reach = 0;                  ///< m, half the length of a segment
+  double stiffness = 0;              ///< N/m of one segment
+  std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; must contain the place of contact
+  bool against_round_only = false;   ///< axes of pins: their ends decide against everything else
+};
+
+/// The middle of one segment.
+struct Sample {
+  double c = 1, s = 0;  ///< arc: cosine and sine of t; line: t and 0
+  /// Directions from here into the body along its boundary, [begin, end) of ExactBody::wedges. The normal of a contact
+  /// has no negative part along any of them, for else the body would reach through the other's surface right beside it.
+  std::uint32_t wedge_begin = 0, wedge_end = 0;
+};
+
+/// Up to kGroup neighbouring samples of one feature.
+struct Group {
+  std::uint32_t feature, begin, end;  ///< samples [begin, end)
+};
+inline constexpr std::uint32_t kGroup = 4;
+
+struct ExactBody {
+  /// Parts that move as one, in body coordinates. Any part may be without b-rep: it then adds nothing. A face or edge
+  /// that no triangle or polyline belongs to adds nothing. @pre options.spacing > 0
+  ExactBody(std::span<const Part> parts, const BodyOptions& options);
+
+  /// Is anything known precisely?
+  [[nodiscard]] bool knows_anything() const { return known_faces > 0; }
+
+  BodyOptions options;
+  std::vector<ExactFace> faces;  ///< of all parts, one part after the other
+  std::vector<ExactEdge> edges;
+  std::vector<Feature> features;
+  std::vector<Sample> samples;
+  std::vector<Vector3d> wedges;
+  std::vector<Group> groups;
+  BoxTree face_tree;   ///< over the faces with a surface
+  BoxTree group_tree;  ///< over the groups, their balls included
+  std::size_t known_faces = 0;
+};
+
+}  // namespace verisim::exact

@@ -1,0 +1,56 @@
+#include "engine/exact/exact_link.hpp"
+
+#include <cmath>
+
+#include "engine/exact/search.hpp"
+
+namespace verisim::exact {
+namespace {
+
+Vector3d velocity_at(const BodyMotion& body, const Vector3d& p_W) {
+  return body.twist.linear + body.twist.angular.cross(p_W - body.p_WC);
+}
+
+SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, bool mover_is_second) {
+  SearchFrame f;
+  const Pose X_BM = base.X_WB.inverse() * mover.X_WB;
+  f.R = X_BM.rotation.toRotationMatrix();
+  f.p = X_BM.position;
+  const Quaterniond to_base = base.X_WB.rotation.conjugate();
+  f.v = to_base * (velocity_at(mover, base.X_WB.position) - velocity_at(base, base.X_WB.position));
+  f.omega = to_base * (mover.twist.angular - base.twist.angular);
+  f.X_WB = base.X_WB;
+  f.dt = dt;
+  f.margin = margin;
+  f.mover_is_second = mover_is_second;
+  return f;
+}
+
+bool is_finite(const BodyMotion& body) {
+  return std::isfinite(body.X_WB.position.sum() + body.X_WB.rotation.coeffs().sum() + body.twist.linear.sum() +
+                       body.twist.angular.sum());
+}
+
+}  // namespace
+
+ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
+                     std::size_t rows_max)
+    : first_(std::move(first)), second_(std::move(second)), rows_(rows_max) {
+  VERISIM_ASSERT(first_ != nullptr);
+  VERISIM_ASSERT(second_ != nullptr);
+  // Each step down either tree leaves one pair behind; the trees halve their items.
+  constexpr std::size_t kDepthMax = 64;
+  stack_.reserve(2 * kDepthMax);
+}
+
+void ExactLink::find(const BodyMotion& first, const BodyMotion& second, double dt, double margin) {
+  rows_.clear();
+  cost_ = {};
+  depth_max_ = 0;
+  if (!is_finite(first) || !is_finite(second)) return;
+  const double a = search(*second_, *first_, frame_of(second, first, dt, margin, true), stack_, rows_, cost_);
+  const double b = search(*first_, *second_, frame_of(first, second, dt, margin, false), stack_, rows_, cost_);
+  depth_max_ = std::max(a, b);
+}
+
+}  // namespace verisim::exact

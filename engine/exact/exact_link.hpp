@@ -1,0 +1,61 @@
+// One ExactLink per pair of bodies: finds the places where their precise entities touch or may touch within the step.
+//
+// Source: issue "hybrid method", item 7. Features of either body (exact_body.hpp) meet the faces of the other:
+//   - a feature's sample slides within its own segment to the place that is nearest to the face (Newton's method);
+//   - gap and normal are those of the precise surface, less the ball's radius;
+//   - trims: beyond a face's border there is no row. At a convex edge between two faces the material is where both
+//     distances are negative: the larger of the two decides, and where the sample's segment crosses from one to the
+//     other, the row is that of edge against edge, with the normal across both. At a concave edge either face has its
+//     row, so the smaller distance decides;
+//   - before anything touches, the face that would be passed last within the step decides, so that a pin that enters a
+//     hole beside its rim does not stumble over the plane around it;
+//   - a place that cannot be the nearest because the faces there look the wrong way counts less and less, and not at
+//     all from 40 degrees on.
+// Every row appears with a gap of the margin or more and so without force.
+#pragma once
+
+#include <memory>
+
+#include "engine/exact/contact_rows.hpp"
+#include "engine/exact/exact_body.hpp"
+
+namespace verisim::exact {
+
+/// Where a body is and how it would move without contact; world coordinates.
+struct BodyMotion {
+  Pose X_WB;
+  Vector3d p_WC = Vector3d::Zero();  ///< centre of mass [m]
+  Twist twist;                       ///< of the centre of mass
+};
+
+/// Work of one search; deterministic.
+struct SearchCost {
+  std::uint64_t groups = 0;   ///< pairs of group and face that were near
+  std::uint64_t samples = 0;  ///< samples that slid
+  std::uint64_t rows = 0;
+};
+
+class ExactLink {
+ public:
+  /// @pre neither is null
+  ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
+            std::size_t rows_max = 4096);
+
+  /// Fills `rows` with every place whose gap is at most `margin` [m] (add the distance that the bodies can close within
+  /// the step). The list is in the order of features and faces, whatever the poses. No allocation.
+  /// A pose that is not finite gives no row.
+  void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
+
+  [[nodiscard]] const RowList& rows() const { return rows_; }
+  [[nodiscard]] const SearchCost& cost() const { return cost_; }  ///< of the last find
+  [[nodiscard]] double depth_max() const { return depth_max_; }   ///< m, deepest overlap at the start of the step
+
+ private:
+  std::shared_ptr<const ExactBody> first_, second_;
+  RowList rows_;
+  SearchCost cost_;
+  double depth_max_ = 0;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> stack_;
+};
+
+}  // namespace verisim::exact

@@ -1,0 +1,230 @@
+#include "engine/exact/feature_maker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/pinned_math.hpp"
+
+namespace verisim::exact {
+namespace {
+
+constexpr double kSegmentMax = pinned::kPi / 8;  // rad: the search's series for sine and cosine are made for half of it
+
+/// A curve as a feature has it, and how it is cut.
+struct Cut {
+  Feature::Kind kind;
+  Vector3d origin, x, y;
+  double from = 0, width = 0;  ///< of a segment, in t
+  int segments = 0;            ///< 0: no length
+
+  [[nodiscard]] Sample sample_at(double t) const {
+    Sample sample;
+    sample.c = kind == Feature::Kind::arc ? pinned::cos(t) : t;
+    sample.s = kind == Feature::Kind::arc ? pinned::sin(t) : 0;
+    return sample;
+  }
+  [[nodiscard]] Vector3d point_at(double t) const {
+    const Sample at = sample_at(t);
+    return origin + at.c * x + at.s * y;
+  }
+  [[nodiscard]] Vector3d tangent_at(const Sample& at) const {
+    return (kind == Feature::Kind::arc ? Vector3d(at.c * y - at.s * x) : x).normalized();
+  }
+};
+
+void cut_evenly(Cut& cut, double from, double to, double longest) {
+  if (!(to > from) || !std::isfinite(to - from)) return;
+  cut.segments = std::max(1, static_cast<int>(std::ceil((to - from) / longest - 1e-9)));
+  cut.from = from;
+  cut.width = (to - from) / cut.segments;
+}
+
+Cut cut_of(const Curve& curve, const std::array<double, 2>& t_range, double spacing) {
+  Cut cut{Feature::Kind::line, Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  const auto arc = [&](const auto& c, double along_x, double along_y) {
+    cut.kind = Feature::Kind::arc;
+    cut.origin = c.center;
+    cut.x = along_x * c.x_axis;
+    cut.y = along_y * c.normal.cross(c.x_axis);
+    const double wider = std::max(along_x, along_y);
+    if (wider > 0) cut_evenly(cut, t_range[0], t_range[1], std::min(spacing / wider, kSegmentMax));
+  };
+  if (const auto* line = std::get_if<Line>(&curve)) {
+    cut.origin = line->point;
+    cut.x = line->direction;
+    cut_evenly(cut, t_range[0], t_range[1], spacing);
+  } else if (const auto* circle = std::get_if<Circle>(&curve)) {
+    arc(*circle, circle->radius, circle->radius);
+  } else if (const auto* ellipse = std::get_if<Ellipse>(&curve)) {
+    arc(*ellipse, ellipse->major_radius, ellipse->minor_radius);
+  }
+  return cut;
+}
+
+Feature feature_of(const Cut& cut, const BodyOptions& options) {
+  Feature f;
+  f.kind = cut.kind;
+  f.origin = cut.origin;
+  f.x = cut.x;
+  f.y = cut.y;
+  f.half_width = 0.5 * cut.width;
+  f.reach = f.half_width * std::max(cut.x.norm(), cut.y.norm());
+  f.stiffness = 2 * f.reach * options.line_stiffness;
+  return f;
+}
+
+/// Adds the feature and its samples, in groups.
+void add(ExactBody& body, const Feature& feature, std::span<const Sample> samples) {
+  const auto number = static_cast<std::uint32_t>(body.features.size());
+  body.features.push_back(feature);
+  for (std::size_t i = 0; i < samples.size(); i += kGroup) {
+    const auto begin = static_cast<std::uint32_t>(body.samples.size());
+    const std::span<const Sample> some = samples.subspan(i, std::min<std::size_t>(kGroup, samples.size() - i));
+    body.samples.insert(body.samples.end(), some.begin(), some.end());
+    body.groups.push_back({number, begin, static_cast<std::uint32_t>(body.samples.size())});
+  }
+}
+
+void add_point(ExactBody& body, const Vector3d& point, double radius, std::uint32_t own_face, const Sample& sample) {
+  Feature f;
+  f.origin = point;
+  f.radius = radius;
+  f.own_face = own_face;
+  f.stiffness = body.options.line_stiffness * body.options.point_length;
+  add(body, f, std::span(&sample, 1));
+}
+
+/// Moves a point onto both surfaces. Their normals are not parallel along an edge that has a fold; along a smooth one
+/// the point goes as near as the two allow.
+Vector3d put_onto(const PreciseSurface* first, const PreciseSurface* second, Vector3d p) {
+  constexpr int kRounds = 30;  // each halves the error where the faces meet at 45 degrees or more
+  for (int i = 0; i < kRounds; ++i) {
+    for (const PreciseSurface* surface : {first, second}) {
+      if (surface == nullptr) continue;
+      const SurfaceAt at = surface->at(p);
+      p -= at.distance * at.normal;
+    }
+  }
+  return p;
+}
+
+}  // namespace
+
+std::vector<Vector3d> points_along(const Edge& edge, double spacing, const PreciseSurface* first,
+                                   const PreciseSurface* second) {
+  std::vector<Vector3d> points;
+  const Cut cut = cut_of(edge.curve, edge.t_range, spacing);
+  for (int i = 0; cut.segments > 0 && i <= cut.segments; ++i) points.push_back(cut.point_at(cut.from + i * cut.width));
+  if (std::holds_alternative<OtherCurve>(edge.curve)) {
+    for (const Vector3d& p : edge.polyline) points.push_back(put_onto(first, second, p));
+  }
+  return points;
+}
+
+void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made, const std::vector<Vector3d>& points,
+                       const std::array<double, 2>& side_sign) {
+  if (made.fold == Fold::concave) return;
+  const auto add_wedge = [&](Sample& sample, const Vector3d& p, const Vector3d& tangent) {
+    sample.wedge_begin = static_cast<std::uint32_t>(body.wedges.size());
+    for (std::size_t side = 0; side < 2; ++side) {
+      const auto& surface = body.faces[made.faces[side]].surface;
+      if (surface) body.wedges.emplace_back(-side_sign[side] * tangent.cross(surface->at(p).normal).normalized());
+    }
+    sample.wedge_end = static_cast<std::uint32_t>(body.wedges.size());
+  };
+  const Cut cut = cut_of(edge.curve, edge.t_range, body.options.spacing);
+  std::vector<Sample> samples;
+  for (int i = 0; i < cut.segments; ++i) {
+    const double t = cut.from + (i + 0.5) * cut.width;
+    samples.push_back(cut.sample_at(t));
+    add_wedge(samples.back(), cut.point_at(t), cut.tangent_at(samples.back()));
+  }
+  if (!samples.empty()) add(body, feature_of(cut, body.options), samples);
+  if (!std::holds_alternative<OtherCurve>(edge.curve)) return;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {  // a curve of another kind: its chords
+    const Vector3d chord = points[i + 1] - points[i];
+    Cut line{Feature::Kind::line, points[i], chord.normalized(), Vector3d::Zero()};
+    cut_evenly(line, 0, chord.norm(), body.options.spacing);
+    samples.clear();
+    for (int j = 0; j < line.segments; ++j) {
+      const double t = line.from + (j + 0.5) * line.width;
+      samples.push_back(line.sample_at(t));
+      add_wedge(samples.back(), line.point_at(t), line.x);
+    }
+    if (!samples.empty()) add(body, feature_of(line, body.options), samples);
+  }
+}
+
+void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) {
+  const auto add_curve = [&](const Curve& curve, const std::array<double, 2>& range, double radius, bool round_only) {
+    const Cut cut = cut_of(curve, range, body.options.spacing);
+    std::vector<Sample> samples;
+    for (int i = 0; i < cut.segments; ++i) samples.push_back(cut.sample_at(cut.from + (i + 0.5) * cut.width));
+    Feature f = feature_of(cut, body.options);
+    f.radius = radius;
+    f.own_face = number;
+    f.against_round_only = round_only;
+    if (!samples.empty()) add(body, f, samples);
+  };
+  if (const auto* ball = std::get_if<Sphere>(&face.surface); ball != nullptr && !ball->hole) {
+    add_point(body, ball->center, ball->radius, number, {});
+  } else if (const auto* torus = std::get_if<Torus>(&face.surface); torus != nullptr && !torus->hole) {
+    add_curve(Circle{torus->center, torus->direction, torus->x_axis, torus->major_radius}, face.u_range,
+              torus->minor_radius, false);
+  } else if (const auto* pin = std::get_if<Cylinder>(&face.surface); pin != nullptr && !pin->hole) {
+    add_curve(Line{pin->point, pin->direction}, face.v_range, pin->radius, true);
+  } else if (const auto* cone = std::get_if<Cone>(&face.surface); cone != nullptr && !cone->hole) {
+    const double to_apex = -cone->radius / pinned::tan(cone->half_angle);
+    constexpr double kNear = 1e-9;  // m: what rounding of the bounds may leave
+    if (face.v_range[0] < to_apex + kNear) {
+      Sample sample;
+      sample.wedge_begin = static_cast<std::uint32_t>(body.wedges.size());
+      const double out = pinned::sin(cone->half_angle);
+      const double along = pinned::cos(cone->half_angle);
+      const Vector3d y = cone->direction.cross(cone->x_axis);
+      for (const Vector3d& across : {cone->x_axis, Vector3d(-cone->x_axis), y, Vector3d(-y)})
+        body.wedges.emplace_back(along * cone->direction + out * across);
+      sample.wedge_end = static_cast<std::uint32_t>(body.wedges.size());
+      add_point(body, cone->point + to_apex * cone->direction, 0, kNoFace, sample);
+    }
+  }
+}
+
+void add_corner_features(ExactBody& body, std::vector<EdgeEnd> ends) {
+  constexpr double kSame = 1e-7;  // m: ends nearer than this are one corner
+  std::vector<bool> used(ends.size(), false);
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const EdgeEnd& a, const EdgeEnd& b) { return a.point.x() < b.point.x(); });
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (used[i]) continue;
+    Sample sample;
+    sample.wedge_begin = static_cast<std::uint32_t>(body.wedges.size());
+    bool convex = true;
+    for (std::size_t j = i; j < ends.size() && ends[j].point.x() <= ends[i].point.x() + kSame; ++j) {
+      if (used[j] || (ends[j].point - ends[i].point).norm() > kSame) continue;
+      used[j] = true;
+      convex = convex && ends[j].fold == Fold::convex;
+      body.wedges.push_back(ends[j].into);
+    }
+    sample.wedge_end = static_cast<std::uint32_t>(body.wedges.size());
+    if (convex && sample.wedge_end - sample.wedge_begin >= 3) {
+      add_point(body, ends[i].point, 0, kNoFace, sample);
+    } else {
+      body.wedges.resize(sample.wedge_begin);
+    }
+  }
+}
+
+Bounds bounds_of(const ExactBody& body, const Group& group) {
+  const Feature& f = body.features[group.feature];
+  Bounds bounds;
+  const Vector3d margin = Vector3d::Constant(f.radius + f.reach);
+  for (std::uint32_t i = group.begin; i < group.end; ++i) {
+    const Vector3d p = place_of(f, body.samples[i].c, body.samples[i].s);
+    bounds.include(p - margin);
+    bounds.include(p + margin);
+  }
+  return bounds;
+}
+
+}  // namespace verisim::exact

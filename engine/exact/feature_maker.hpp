@@ -1,0 +1,39 @@
+// How edges, corners and round faces of a part become features (exact_body.hpp). Private to this folder.
+#pragma once
+
+#include "engine/exact/exact_body.hpp"
+
+namespace verisim::exact {
+
+/// Points along the edge, ends included, at most `spacing` [m] apart on lines, circles and ellipses (there exact, at
+/// least 16 segments to a turn); on other curves those of the tessellation, put onto the surfaces of the edge's faces
+/// as far as `first` and `second` are known. Empty for an edge without length.
+[[nodiscard]] std::vector<Vector3d> points_along(const Edge& edge, double spacing, const PreciseSurface* first,
+                                                 const PreciseSurface* second);
+
+/// The samples of an edge that can touch something: not those of a concave edge. `side_sign[i]` makes
+/// tangent x normal of face i point out of that face.
+void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made, const std::vector<Vector3d>& points,
+                       const std::array<double, 2>& side_sign);
+
+/// A ball's middle, a torus' ring, a pin's axis, a cone's apex.
+void add_face_features(ExactBody& body, const Face& face, std::uint32_t number);
+
+/// One edge's end, for add_corner_features.
+struct EdgeEnd {
+  Vector3d point;
+  Vector3d into;  ///< unit, along the edge
+  Fold fold;
+};
+/// Points where three or more edges end, all of them convex.
+void add_corner_features(ExactBody& body, std::vector<EdgeEnd> ends);
+
+/// The box around a group's balls.
+[[nodiscard]] Bounds bounds_of(const ExactBody& body, const Group& group);
+
+/// Where along a feature a sample is.
+[[nodiscard]] inline Vector3d place_of(const Feature& f, double c, double s) {
+  return f.origin + c * f.x + s * f.y;
+}
+
+}  // namespace verisim::exact

@@ -1,0 +1,26 @@
+// One direction of a search: the features of one body (the mover) against the faces of the other (the base), in the
+// coordinates of the base. Private to this folder.
+#pragma once
+
+#include "engine/exact/exact_link.hpp"
+
+namespace verisim::exact {
+
+/// The mover's place and motion as the base sees them.
+struct SearchFrame {
+  Matrix3d R;         ///< mover's coordinates to the base's
+  Vector3d p;         ///< m, mover's origin
+  Vector3d v, omega;  ///< velocity of the mover's material against the base: v + omega x point
+  Pose X_WB;          ///< base
+  double dt, margin;
+  bool mover_is_second;
+};
+
+/// Fixed working memory of a search.
+using NodePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Appends the rows. @returns the deepest overlap found [m]
+double search(const ExactBody& mover, const ExactBody& base, const SearchFrame& frame, NodePairs& stack, RowList& rows,
+              SearchCost& cost);
+
+}  // namespace verisim::exact

@@ -1,0 +1,52 @@
+// Which part of a surface belongs to a face: a raster over the surface's chart whose cells are outside the face, inside
+// it, or near its border. Near the border a cell names the edges that pass; the search then looks at the faces beyond
+// them (exact_link.hpp), so that the raster decides nothing finer than a cell.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/exact/precise_surface.hpp"
+#include "engine/geometry/mesh.hpp"
+
+namespace verisim::exact {
+
+class Trim {
+ public:
+  enum class Where : std::uint8_t { outside, inside, border };
+
+  /// @param triangles  the face's, as indices into mesh.triangles: they say on which side of its borders it lies
+  /// @param borders    numbers and points of its bounding edges (seams left out); neighbouring points as near as a cell
+  /// @param cell       wanted cell size [m]; at most 48 cells are made along each side of the chart
+  struct Border {
+    std::uint32_t edge;
+    std::span<const Vector3d> points;
+  };
+  Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+       std::span<const Border> borders, double cell);
+
+  struct Answer {
+    Where where;
+    std::span<const std::uint32_t> edges;  ///< border only: edges that pass within a cell or two, ascending
+  };
+  /// Where a point of the surface lies. About 10 ns.
+  [[nodiscard]] Answer find(const PreciseSurface& surface, const Vector3d& foot) const;
+
+ private:
+  struct Axis {
+    double from = 0, cell = 1;
+    int count = 1;
+    bool around = false;  ///< the last cell's neighbour is the first
+    [[nodiscard]] int index(double x) const;
+    [[nodiscard]] int neighbour(int i, int step) const;  ///< -1: none
+  };
+  [[nodiscard]] int cell_at(const std::array<double, 2>& chart) const;
+
+  Axis a_, b_;
+  std::vector<Where> cells_;
+  std::vector<std::uint32_t> first_edge_;  ///< (cells + 1): where a cell's edges begin
+  std::vector<std::uint32_t> edges_;
+};
+
+}  // namespace verisim::exact
