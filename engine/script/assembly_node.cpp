@@ -1,6 +1,8 @@
 #include "engine/script/assembly_node.hpp"
 
+#include <iterator>
 #include <type_traits>
+#include <utility>
 
 #include "engine/base/error.hpp"
 
@@ -19,8 +21,7 @@ class Gatherer {
     if (++visited_ > kNodesMax)
       fail(ErrorKind::input, "the object has more than {} nodes; build it from fewer", kNodesMax);
     if (depth > kNodeDepthMax)
-      fail(ErrorKind::input, "the object's groups are nested more than {} deep; is a group its own child?",
-           kNodeDepthMax);
+      fail(ErrorKind::input, "the object's groups are nested more than {} deep; flatten them", kNodeDepthMax);
     if (node.kind != Node::Kind::group) {
       leaves.push_back({&node, scale, pose});
       return;
@@ -101,6 +102,17 @@ std::shared_ptr<const Solid> scaled(const std::shared_ptr<const Solid>& solid, d
   result->placement.position *= scale;
   for (auto& child : result->children) child = scaled(child, scale);
   return result;
+}
+
+Node::~Node() {
+  std::vector<std::shared_ptr<Node>> waiting = std::move(children);
+  while (!waiting.empty()) {
+    const std::shared_ptr<Node> node = std::move(waiting.back());
+    waiting.pop_back();
+    if (node.use_count() > 1) continue;
+    std::move(node->children.begin(), node->children.end(), std::back_inserter(waiting));
+    node->children.clear();
+  }
 }
 
 PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs) {

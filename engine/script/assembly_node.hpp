@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "engine/geometry/loader.hpp"
@@ -29,7 +30,28 @@ struct Node {
   double scale = 1;
   Pose pose;
   std::vector<std::shared_ptr<Node>> children;
+
+  Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+  ~Node();  ///< takes what hangs below apart in a loop: a chain of a million groups must not fill the stack
 };
+
+/// Does `node` hang somewhere below `top`, or is it `top`? `visit` is called for each group that is looked into, once.
+template <typename Visit>
+[[nodiscard]] bool hangs_below(const Node& top, const Node& node, Visit visit) {
+  std::vector<const Node*> waiting = {&top};
+  std::unordered_set<const Node*> seen;
+  while (!waiting.empty()) {
+    const Node* here = waiting.back();
+    waiting.pop_back();
+    if (here == &node) return true;
+    if (!seen.insert(here).second) continue;
+    visit();
+    for (const auto& child : here->children) waiting.push_back(child.get());
+  }
+  return false;
+}
 
 struct PlacedParts {
   Pose pose;                ///< of the body's coordinates in those of the child

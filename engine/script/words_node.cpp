@@ -284,6 +284,8 @@ int add_child(lua_State* L) {
   const NodePointer group_node = get<NodePointer>(L, 1, "what :addChild adds to");
   if (group_node->kind != Node::Kind::group) raise(L, "addChild: only a Group or Transform has children");
   const NodePointer child = get<NodePointer>(L, 2, "addChild: the child");
+  if (hangs_below(*child, *group_node, [&] { Sandbox::of(L).charge(L, 10); }))
+    raise(L, "addChild: the group hangs below what is to be its child; nothing can hold itself");
   group_node->children.push_back(child);
   return 0;
 }
