@@ -51,8 +51,8 @@ struct ConstraintSide {
 };
 
 struct Constraint {
-  ConstraintKind kind = ConstraintKind::none;
-  // Everything below has a meaning only if kind is not `none`, and is otherwise left as it is.
+  ConstraintKind kind;
+  // Everything below has a meaning only if kind is not `none`: most pairs are nothing, and are not paid for.
   Pairing pairing;
   NormalField field;
   Side guide;        ///< whose data gives the field of normals; `neither`: both alike
@@ -61,13 +61,15 @@ struct Constraint {
   double clearance;  ///< hole's radius minus pin's; 0 where radii mean nothing
   ConstraintSide a, b;
 
+  /// No constraint.
+  Constraint() : kind(ConstraintKind::none) {}
   [[nodiscard]] const ConstraintSide& side(Side s) const { return s == Side::b ? b : a; }
 };
 
 /// The same constraint seen from the other body.
 [[nodiscard]] inline Constraint mirrored(const Constraint& c) {
+  if (c.kind == ConstraintKind::none) return {};
   Constraint m = c;
-  if (c.kind == ConstraintKind::none) return m;
   m.a = c.b;
   m.b = c.a;
   m.guide = opposite(c.guide);

@@ -1,5 +1,6 @@
 #include "engine/constraint/entities.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.hpp"
@@ -11,6 +12,8 @@ namespace {
 constexpr std::size_t kSetsMax = 65534;  ///< the last id is kept for "no pair" in the memo
 constexpr double kDeclaredHalf = 0.5;    ///< m to each side of a plane or line of which nothing else is known
 
+using Range = std::array<double, 2>;
+
 bool finite(const Vector3d& v) {
   return v.allFinite();
 }
@@ -20,52 +23,70 @@ bool unit(const Vector3d& v) {
 bool positive(double x) {
   return std::isfinite(x) && x > 0;
 }
-bool has_length(const std::array<double, 2>& range) {
-  return std::isfinite(range[0]) && std::isfinite(range[1]) && range[1] > range[0];
+double middle(const Range& range) {
+  return (range[0] + range[1]) / 2;
 }
-
+double half(const Range& range) {
+  return (range[1] - range[0]) / 2;
+}
 Role role_of(bool hole) {
   return hole ? Role::hole : Role::pin;
 }
 
-// Every shape says for itself whether it has a size.
-bool sound(const Bounded<Plane>& f) {
-  return finite(f.shape.point) && unit(f.shape.normal) && unit(f.shape.x_axis) && has_length(f.u) && has_length(f.v);
-}
-bool sound(const Bounded<Cylinder>& f) {
-  return finite(f.shape.point) && unit(f.shape.direction) && positive(f.shape.radius) && has_length(f.v);
-}
-bool sound(const Bounded<Cone>& f) {
-  constexpr double kSteepest = 1.5707;  // just under pi/2, where a cone becomes a plane
-  return finite(f.shape.point) && unit(f.shape.direction) && std::isfinite(f.shape.radius) && f.shape.radius >= 0 &&
-         positive(f.shape.half_angle) && f.shape.half_angle < kSteepest && has_length(f.v);
-}
-bool sound(const Bounded<Sphere>& f) {
-  return finite(f.shape.center) && positive(f.shape.radius);
-}
-bool sound(const Bounded<Torus>& f) {
-  return finite(f.shape.center) && unit(f.shape.direction) && positive(f.shape.major_radius) &&
-         positive(f.shape.minor_radius);
-}
-bool sound(const Bounded<Line>& e) {
-  return finite(e.shape.point) && unit(e.shape.direction) && has_length(e.u);
-}
-bool sound(const Bounded<Circle>& e) {
-  return finite(e.shape.center) && unit(e.shape.normal) && positive(e.shape.radius) && has_length(e.u);
-}
-bool sound(const Bounded<Ellipse>& e) {
-  return finite(e.shape.center) && unit(e.shape.normal) && positive(e.shape.major_radius) &&
-         positive(e.shape.minor_radius) && has_length(e.u);
-}
+// Each shape with its bounds: moved to the middle of its stretch, or refused (an entity of no equation) if it has no
+// size. `u`, `v` are the face's ranges, `t` the edge's.
 
-template <typename Shape>
-Entity surface_if_sound(const Bounded<Shape>& f) {
-  if (sound(f)) return f;
+Entity bounded(Plane s, const Range& u, const Range& v) {
+  if (!finite(s.point) || !unit(s.normal) || !unit(s.x_axis)) return Bounded<OtherSurface>();
+  if (!positive(half(u)) || !positive(half(v))) return Bounded<OtherSurface>();
+  s.point += middle(u) * s.x_axis + middle(v) * s.normal.cross(s.x_axis);
+  return Bounded<Plane>{s, std::min(half(u), half(v))};
+}
+Entity bounded(Cylinder s, const Range& /*u*/, const Range& v) {
+  if (!finite(s.point) || !unit(s.direction)) return Bounded<OtherSurface>();
+  if (!positive(s.radius) || !positive(half(v))) return Bounded<OtherSurface>();
+  s.point += middle(v) * s.direction;
+  return Bounded<Cylinder>{s, half(v), 0, role_of(s.hole)};
+}
+Entity bounded(Cone s, const Range& /*u*/, const Range& v) {
+  constexpr double kSteepest = 1.5707;  // just under pi/2, where a cone becomes a plane
+  if (!finite(s.point) || !unit(s.direction)) return Bounded<OtherSurface>();
+  if (!std::isfinite(s.radius) || s.radius < 0 || !positive(half(v))) return Bounded<OtherSurface>();
+  if (!positive(s.half_angle) || s.half_angle >= kSteepest) return Bounded<OtherSurface>();
+  const double tangent = pinned::tan(s.half_angle);
+  s.point += middle(v) * s.direction;
+  s.radius += middle(v) * tangent;
+  return Bounded<Cone>{s, half(v), tangent, role_of(s.hole)};
+}
+Entity bounded(const Sphere& s, const Range& /*u*/, const Range& /*v*/) {
+  if (!finite(s.center) || !positive(s.radius)) return Bounded<OtherSurface>();
+  return Bounded<Sphere>{s, 0, 0, role_of(s.hole)};
+}
+Entity bounded(const Torus& s, const Range& /*u*/, const Range& /*v*/) {
+  if (!finite(s.center) || !unit(s.direction)) return Bounded<OtherSurface>();
+  if (!positive(s.major_radius) || !positive(s.minor_radius)) return Bounded<OtherSurface>();
+  return Bounded<Torus>{s, s.minor_radius, 0, role_of(s.hole)};
+}
+Entity bounded(const OtherSurface& /*s*/, const Range& /*u*/, const Range& /*v*/) {
   return Bounded<OtherSurface>();
 }
-template <typename Shape>
-Entity curve_if_sound(const Bounded<Shape>& e) {
-  if (sound(e)) return e;
+
+Entity bounded(Line s, const Range& t, Role role) {
+  if (!finite(s.point) || !unit(s.direction) || !positive(half(t))) return Bounded<OtherCurve>();
+  s.point += middle(t) * s.direction;
+  return Bounded<Line>{s, half(t), 0, role};
+}
+Entity bounded(const Circle& s, const Range& t, Role role) {
+  if (!finite(s.center) || !unit(s.normal)) return Bounded<OtherCurve>();
+  if (!positive(s.radius) || !positive(half(t))) return Bounded<OtherCurve>();
+  return Bounded<Circle>{s, s.radius, 0, role};
+}
+Entity bounded(const Ellipse& s, const Range& t, Role role) {
+  if (!finite(s.center) || !unit(s.normal) || !positive(half(t))) return Bounded<OtherCurve>();
+  if (!positive(s.major_radius) || !positive(s.minor_radius)) return Bounded<OtherCurve>();
+  return Bounded<Ellipse>{s, s.major_radius, 0, role};
+}
+Entity bounded(const OtherCurve& /*s*/, const Range& /*t*/, Role /*role*/) {
   return Bounded<OtherCurve>();
 }
 
@@ -90,31 +111,12 @@ Role role_beside(const Edge& edge, std::span<const Face> faces) {
 }  // namespace
 
 Entity entity_of(const Face& face) {
-  return std::visit(
-      [&](const auto& surface) -> Entity {
-        using Shape = std::decay_t<decltype(surface)>;
-        if constexpr (std::is_same_v<Shape, OtherSurface>) {
-          return Bounded<OtherSurface>();
-        } else {
-          Role role = Role::unknown;
-          if constexpr (requires { surface.hole; }) role = role_of(surface.hole);
-          return surface_if_sound(Bounded<Shape>{surface, face.u_range, face.v_range, role});
-        }
-      },
-      face.surface);
+  return std::visit([&](const auto& surface) { return bounded(surface, face.u_range, face.v_range); }, face.surface);
 }
 
 Entity entity_of(const Edge& edge, std::span<const Face> faces) {
-  return std::visit(
-      [&](const auto& curve) -> Entity {
-        using Shape = std::decay_t<decltype(curve)>;
-        if constexpr (std::is_same_v<Shape, OtherCurve>) {
-          return Bounded<OtherCurve>();
-        } else {
-          return curve_if_sound(Bounded<Shape>{curve, edge.t_range, {0, 0}, role_beside(edge, faces)});
-        }
-      },
-      edge.curve);
+  return std::visit([&](const auto& curve) { return bounded(curve, edge.t_range, role_beside(edge, faces)); },
+                    edge.curve);
 }
 
 Entity entity_declared(const Surface& surface) {

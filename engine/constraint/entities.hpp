@@ -19,12 +19,14 @@ namespace verisim {
 /// bounds.
 enum class Role : std::uint8_t { unknown, pin, hole };
 
-/// A shape of engine/geometry/entity.hpp with the stretch of it that the part really has.
+/// A shape of engine/geometry/entity.hpp with the stretch of it that the part really has: moved so that its point is
+/// the middle of that stretch (a cone's radius is the one there).
 template <typename Shape>
 struct Bounded {
   Shape shape;
-  std::array<double, 2> u = {0, 0};  ///< a face's u, an edge's t (low, high)
-  std::array<double, 2> v = {0, 0};  ///< a face's v
+  double half_length = 0;  ///< m: along the axis or line to each side; a plane: half of its shorter side; a ball: 0.
+                           ///< A rim does not say how long its pin or hole is: it counts for its radius.
+  double tangent = 0;      ///< of a cone's half angle; 0 for all others
   Role role = Role::unknown;
 };
 

@@ -17,10 +17,7 @@ struct CircleCone {
 
   static bool matches(const Bounded<First>& a, const Bounded<Second>& b, const Tolerances& /*tolerances*/) {
     if (a.role == b.role) return false;
-    const double tangent = pinned::tan(b.shape.half_angle);
-    const double low = b.shape.radius + b.v[0] * tangent;
-    const double high = b.shape.radius + b.v[1] * tangent;
-    return a.shape.radius > low && a.shape.radius < high;
+    return a.shape.radius > recognizing::radius_low(b) && a.shape.radius < recognizing::radius_high(b);
   }
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {

@@ -20,10 +20,8 @@ struct ConeCone {
   static bool matches(const Bounded<First>& a, const Bounded<Second>& b, const Tolerances& tolerances) {
     if (a.role == b.role) return false;
     if (std::abs(a.shape.half_angle - b.shape.half_angle) > tolerances.half_angle_difference_max) return false;
-    const double tangent = pinned::tan(a.shape.half_angle);
-    const double low_a = a.shape.radius + a.v[0] * tangent;
-    const double low_b = b.shape.radius + b.v[0] * tangent;
-    return low_a < b.shape.radius + b.v[1] * tangent && low_b < a.shape.radius + a.v[1] * tangent;
+    return recognizing::radius_low(a) < recognizing::radius_high(b) &&
+           recognizing::radius_low(b) < recognizing::radius_high(a);
   }
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {

@@ -1,7 +1,6 @@
 // What recognizers share: does a pin fit a hole, and how a side of a constraint is written down.
 #pragma once
 
-#include "engine/base/pinned_math.hpp"
 #include "engine/constraint/constraint.hpp"
 #include "engine/constraint/entities.hpp"
 #include "engine/constraint/tolerances.hpp"
@@ -39,40 +38,34 @@ template <typename A, typename B>
   return false;
 }
 
-[[nodiscard]] inline double middle(const std::array<double, 2>& range) {
-  return (range[0] + range[1]) / 2;
+/// The radii between which a cone lies.
+[[nodiscard]] inline double radius_low(const Bounded<Cone>& f) {
+  return f.shape.radius - f.half_length * f.tangent;
 }
-[[nodiscard]] inline double half(const std::array<double, 2>& range) {
-  return (range[1] - range[0]) / 2;
+[[nodiscard]] inline double radius_high(const Bounded<Cone>& f) {
+  return f.shape.radius + f.half_length * f.tangent;
 }
 
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Plane>& f) {
-  const Vector3d y = f.shape.normal.cross(f.shape.x_axis);
-  const Vector3d center = f.shape.point + middle(f.u) * f.shape.x_axis + middle(f.v) * y;
-  const double shorter = half(f.u) < half(f.v) ? half(f.u) : half(f.v);
-  return {center, f.shape.normal, 0, shorter, 0};
+  return {f.shape.point, f.shape.normal, 0, f.half_length, 0};
 }
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Cylinder>& f) {
-  return {f.shape.point + middle(f.v) * f.shape.direction, f.shape.direction, f.shape.radius, half(f.v), 0};
+  return {f.shape.point, f.shape.direction, f.shape.radius, f.half_length, 0};
 }
-/// `point` moves to the middle of the flank, `radius` with it.
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Cone>& f) {
-  const double tangent = pinned::tan(f.shape.half_angle);
-  return {f.shape.point + middle(f.v) * f.shape.direction, f.shape.direction, f.shape.radius + middle(f.v) * tangent,
-          half(f.v), tangent};
+  return {f.shape.point, f.shape.direction, f.shape.radius, f.half_length, f.tangent};
 }
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Sphere>& f) {
-  return {f.shape.center, f.shape.direction, f.shape.radius, 0, 0};
+  return {f.shape.center, f.shape.direction, f.shape.radius, f.half_length, 0};
 }
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Torus>& f) {
-  return {f.shape.center, f.shape.direction, f.shape.major_radius, f.shape.minor_radius, f.shape.minor_radius};
+  return {f.shape.center, f.shape.direction, f.shape.major_radius, f.half_length, f.shape.minor_radius};
 }
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Line>& e) {
-  return {e.shape.point + middle(e.u) * e.shape.direction, e.shape.direction, 0, half(e.u), 0};
+  return {e.shape.point, e.shape.direction, 0, e.half_length, 0};
 }
-/// A rim says nothing of how long its pin or hole is; it stands for one radius of it to each side.
 [[nodiscard]] inline ConstraintSide side_of(const Bounded<Circle>& e) {
-  return {e.shape.center, e.shape.normal, e.shape.radius, e.shape.radius, 0};
+  return {e.shape.center, e.shape.normal, e.shape.radius, e.half_length, 0};
 }
 
 /// A constraint whose two sides are a and b.

@@ -5,6 +5,8 @@
 //     \(   )/         r touches a cone of half angle h where the cone's radius is r cos h.
 #pragma once
 
+#include <cmath>
+
 #include "engine/constraint/recognize/fit.hpp"
 
 namespace verisim {
@@ -16,9 +18,8 @@ struct SphereCone {
 
   static bool matches(const Bounded<First>& a, const Bounded<Second>& b, const Tolerances& /*tolerances*/) {
     if (a.role != Role::pin || b.role != Role::hole) return false;
-    const double tangent = pinned::tan(b.shape.half_angle);
-    const double touching = a.shape.radius * pinned::cos(b.shape.half_angle);
-    return touching > b.shape.radius + b.v[0] * tangent && touching < b.shape.radius + b.v[1] * tangent;
+    const double touching = a.shape.radius / std::sqrt(1 + b.tangent * b.tangent);  // r cos h
+    return touching > recognizing::radius_low(b) && touching < recognizing::radius_high(b);
   }
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
