@@ -9,7 +9,7 @@
 namespace verisim {
 namespace {
 
-constexpr std::size_t kSetsMax = 65534;  ///< the last id is kept for "no pair" in the memo
+constexpr std::size_t kSetsMax = 65536;  ///< that FeatureSetId can number
 constexpr double kDeclaredHalf = 0.5;    ///< m to each side of a plane or line of which nothing else is known
 
 using Range = std::array<double, 2>;
@@ -138,37 +138,25 @@ Entity entity_declared(const Curve& curve) {
   return entity_of(edge, {});
 }
 
-namespace {
-std::vector<Entity> entities_of(const Part& part) {
+std::vector<Entity> EntitySets::entities_of(std::span<const Face> faces, std::span<const Edge> edges) {
   std::vector<Entity> all;
-  all.reserve(part.faces.size() + part.edges.size());
-  for (const Face& face : part.faces) all.push_back(entity_of(face));
-  for (const Edge& edge : part.edges) all.push_back(entity_of(edge, part.faces));
+  all.reserve(faces.size() + edges.size());
+  for (const Face& face : faces) all.push_back(entity_of(face));
+  for (const Edge& edge : edges) all.push_back(entity_of(edge, faces));
   return all;
 }
-}  // namespace
 
-EntitySets::EntitySets(const Part& part, std::span<const std::vector<std::uint32_t>> sets)
-    : EntitySets(entities_of(part), sets) {}
-
-EntitySets::EntitySets(std::vector<Entity> entities, std::span<const std::vector<std::uint32_t>> sets)
-    : entities_(std::move(entities)) {
-  if (sets.size() > kSetsMax) {
-    fail(ErrorKind::input, "feature sets: {} different ones, but ids reach to {}; use larger voxels", sets.size(),
-         kSetsMax);
+void EntitySets::add(std::span<const std::uint32_t> set, std::size_t sets) {
+  if (sets > kSetsMax) {
+    fail(ErrorKind::input, "feature sets: {} different ones, but ids reach to {}; use larger voxels", sets, kSetsMax);
   }
-  first_.reserve(sets.size() + 1);
-  first_.push_back(0);
-  if (sets.empty()) first_.push_back(0);
-  for (const auto& set : sets) {
-    for (const std::uint32_t number : set) {
-      if (number >= entities_.size()) {
-        fail(ErrorKind::input, "feature sets: entity {} of a part that has {}; use the part's own faces and edges",
-             number, entities_.size());
-      }
-      numbers_.push_back(number);
+  first_.push_back(static_cast<std::uint32_t>(numbers_.size()));
+  for (const std::uint32_t number : set) {
+    if (number >= entities_.size()) {
+      fail(ErrorKind::input, "feature sets: entity {} of a part that has {}; use the part's own faces and edges",
+           number, entities_.size());
     }
-    first_.push_back(static_cast<std::uint32_t>(numbers_.size()));
+    numbers_.push_back(number);
   }
 }
 

@@ -7,11 +7,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "engine/geometry/entity.hpp"
-#include "engine/geometry/part.hpp"
 
 namespace verisim {
 
@@ -50,12 +50,22 @@ using FeatureSetId = std::uint16_t;
 /// else edge i - faces.size(). Immutable once made; every access is O(1).
 class EntitySets {
  public:
-  EntitySets() : EntitySets(std::vector<Entity>(), {}) {}
-  /// `sets[id]` lists the entity numbers of set `id`; sets[0] should be empty (no list at all: the empty set alone).
-  /// Throws Error(input) if a set names an entity that the part does not have, or if there are more sets than ids
-  /// (65,534).
-  EntitySets(const Part& part, std::span<const std::vector<std::uint32_t>> sets);
-  EntitySets(std::vector<Entity> entities, std::span<const std::vector<std::uint32_t>> sets);
+  /// No entity, and the empty set alone.
+  EntitySets() = default;
+  /// `sets` has size() and [id], which gives entity numbers: engine/voxel's FeatureSets, a vector of vectors. Set 0 is
+  /// the empty one by everyone's convention. Throws Error(input) if a set names an entity that is not there, or if
+  /// there are more sets than ids.
+  template <typename Sets>
+  EntitySets(std::span<const Face> faces, std::span<const Edge> edges, const Sets& sets)
+      : EntitySets(entities_of(faces, edges), sets) {}
+  template <typename Sets>
+  EntitySets(std::vector<Entity> entities, const Sets& sets) : entities_(std::move(entities)) {
+    const std::size_t count = sets.size();
+    if (count == 0) return;
+    first_.clear();
+    for (std::size_t id = 0; id < count; ++id) add(sets[static_cast<FeatureSetId>(id)], count);
+    first_.push_back(static_cast<std::uint32_t>(numbers_.size()));
+  }
 
   [[nodiscard]] std::size_t size() const { return first_.size() - 1; }  ///< sets, the empty one included
   [[nodiscard]] const std::vector<Entity>& entities() const { return entities_; }
@@ -67,9 +77,12 @@ class EntitySets {
   }
 
  private:
+  [[nodiscard]] static std::vector<Entity> entities_of(std::span<const Face> faces, std::span<const Edge> edges);
+  void add(std::span<const std::uint32_t> set, std::size_t sets);
+
   std::vector<Entity> entities_;
-  std::vector<std::uint32_t> first_;    ///< (sets + 1) where each set begins in numbers_
-  std::vector<std::uint32_t> numbers_;  ///< entity numbers, set after set
+  std::vector<std::uint32_t> first_ = {0, 0};  ///< (sets + 1) where each set begins in numbers_
+  std::vector<std::uint32_t> numbers_;         ///< entity numbers, set after set
 };
 
 }  // namespace verisim
