@@ -70,6 +70,10 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_interrupt);
 }
 
+bool was_interrupted() {
+  return interrupted != 0;
+}
+
 void add_timing_columns(Schema& schema) {
   std::string stages;
   for (const char* name : kStageNames) stages += (stages.empty() ? "" : ", ") + std::string(name);

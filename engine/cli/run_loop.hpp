@@ -38,6 +38,8 @@ void add_timing_columns(Schema& schema);
 
 /// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
 void catch_interrupts();
+/// Whether one has asked since. For other loops than run_loop.
+[[nodiscard]] bool was_interrupted();
 
 /// The p-quantile (0 to 1) of some times, nearest rank; 0 of none. `times` is reordered.
 [[nodiscard]] std::uint32_t quantile(std::vector<std::uint32_t>& times, double p);

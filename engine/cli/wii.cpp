@@ -4,6 +4,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
+#include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wii_trace.hpp"
 #include "engine/geometry/write_file.hpp"
 #include "engine/wii/coverage.hpp"
@@ -14,62 +15,6 @@ namespace verisim::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-// ---- track
-
-/// `t,valid,px … crz`: the rows of INTERFACES section 1, numbers as short as reads back to the bit.
-std::string row_of(double t, const wii::Report& report) {
-  const Vector3d& p = report.pose.position;
-  const auto& q = report.pose.rotation.coeffs();
-  const auto v = report.covariance.diagonal();
-  return fmt::format("{},{:d},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", t, report.valid, p.x(), p.y(), p.z(), q[0],
-                     q[1], q[2], q[3], v[0], v[1], v[2], v[3], v[4], v[5]);
-}
-
-std::string track(const WiiRecording& first, const WiiRecording* second, const std::string& name) {
-  wii::TrackerSettings settings = first.settings;
-  if (second != nullptr) settings.X_R1R2 = first.X_WR.inverse() * second->X_WR;
-  const std::unique_ptr<wii::Tracker> tracker = wii::make_tracker(name, settings);
-  std::string text = "t,valid,px,py,pz,qx,qy,qz,qw,cpx,cpy,cpz,crx,cry,crz\n";
-  std::size_t other = 0;
-  for (const WiiSample& sample : first.samples) {
-    for (; second != nullptr && other < second->samples.size() && second->samples[other].t <= sample.t; ++other)
-      (void)tracker->update(second->samples[other].t, second->samples[other].channels, 1);
-    text += row_of(sample.t, tracker->update(sample.t, sample.channels));
-  }
-  return text;
-}
-
-void add_track(CLI::App& wii_command, int& exit_code) {
-  struct Options {
-    std::string trace, second, tracker = "geometric", out;
-    TraceLimits limits;
-  };
-  auto* command =
-      wii_command.add_subcommand("track", "One tracker over one trace (or two): a CSV with a row per sample");
-  auto o = std::make_shared<Options>();
-  command->add_option("TRACE", o->trace, "Wii trace, CSV or HDF5")->required();
-  command->add_option("--second", o->second, "Trace of the second remote, for stereo; both say '# remote_pose:'");
-  command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(wii::tracker_names()));
-  command->add_option("-o,--out", o->out, "CSV to write")->required();
-  command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s");
-  command->add_flag("--resort", o->limits.resort, "Sort the samples by time first");
-  command->footer("Example: verisim wii track head.csv --tracker scaat -o pose.csv");
-  command->callback([=, &exit_code] {
-    if (o->second.empty() == (o->tracker == "stereo"))
-      fail(ErrorKind::usage, "wii track: --second and --tracker stereo belong together; {}",
-           o->second.empty() ? "name the second remote's trace" : "choose --tracker stereo");
-    const WiiRecording first = read_wii_recording(o->trace, o->limits);
-    WiiRecording second;
-    if (!o->second.empty()) {
-      second = read_wii_recording(o->second, o->limits);
-      if (!second.placed)
-        fail(ErrorKind::input, "{}: no '# remote_pose:'; stereo must know where the second remote is", o->second);
-    }
-    write_file(o->out, track(first, o->second.empty() ? nullptr : &second, o->tracker));
-    exit_code = 0;
-  });
-}
 
 // ---- validate
 
@@ -270,11 +215,14 @@ void add_place(CLI::App& wii_command, int& exit_code) {
 }  // namespace
 
 void add_wii(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("wii", "The head trackers: validate them, place a remote, track a trace");
+  auto* command =
+      app.add_subcommand("wii", "The head trackers: validate them, place a remote, track a trace, speak VRPN");
   command->require_subcommand(1);
   add_validate(*command, exit_code);
   add_place(*command, exit_code);
-  add_track(*command, exit_code);
+  add_wii_track(*command, exit_code);
+  add_wii_serve(*command, exit_code);
+  add_wii_listen(*command, exit_code);
 }
 
 }  // namespace verisim::cli

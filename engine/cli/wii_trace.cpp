@@ -87,8 +87,23 @@ void read_header(const std::string& file, const Trace& trace, WiiRecording& reco
 
 }  // namespace
 
+std::vector<std::string> wii_trace_columns() {
+  std::vector<std::string> columns = {"t"};
+  columns.insert(columns.end(), kChannelColumns.begin(), kChannelColumns.end());
+  return columns;
+}
+
+wii::TrackerSettings settings_of(const std::string& name, const Trace& trace) {
+  WiiRecording recording;
+  read_header(name, trace, recording);
+  return recording.settings;
+}
+
 WiiRecording read_wii_recording(const std::string& file, const TraceLimits& limits) {
-  const Trace trace = parse_trace(file, Inputs::live(".", {file}).read(file), "wii", limits);
+  return recording_of(file, parse_trace(file, Inputs::live(".", {file}).read(file), "wii", limits));
+}
+
+WiiRecording recording_of(const std::string& file, const Trace& trace) {
   WiiRecording recording;
   read_header(file, trace, recording);
 

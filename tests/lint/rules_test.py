@@ -22,6 +22,7 @@ MAY_INCLUDE = {
     "device": "base",
     "robot": "base",
     "wii": "base",
+    "vrpn": "base",
     "record": "base",
     "simulation": "base geometry voxel contact constraint exact dynamics device robot wii record",
     "script": "base geometry device robot wii record simulation",
@@ -38,10 +39,12 @@ HOME_OF_LIBRARY = {
     r"hwy/.*": ["engine/contact/"],
     r"CLI/.*": ["engine/cli/"],
     r"nlohmann/.*": ["engine/script/", "engine/cli/"],
+    r"(netinet/.*|arpa/inet|netdb)\.h": ["engine/vrpn/"],
     r"sleef\.h|xxhash\.h|openssl/.*": ["engine/base/"],
 }
 
-# Where the wall clock may be read: to time stages, to pace a run, to wait for the disk or a child process.
+# Where the wall clock may be read: to time stages, to pace a run, to wait for the disk or a child process, to date
+# messages.
 MAY_READ_THE_CLOCK = {
     "engine/simulation/step.cpp",
     "engine/record/recorder.cpp",
@@ -49,6 +52,7 @@ MAY_READ_THE_CLOCK = {
     "engine/cli/doctor.cpp",
     "engine/cli/run_loop.cpp",
     "engine/cli/session.cpp",
+    "engine/cli/wire_clock.cpp",
 }
 
 # Folders whose numbers enter the state, and the files there that use the C library's functions for an error's text.

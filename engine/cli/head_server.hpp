@@ -1,0 +1,32 @@
+// A head tracker and the channels that feed it, as two VRPN devices: a tracker and an analog of 16 channels.
+#pragma once
+
+#include <string>
+
+#include "engine/vrpn/server.hpp"
+#include "engine/wii/tracker.hpp"
+
+namespace verisim::cli {
+
+struct HeadDevices {
+  std::string tracker = "Tracker0";
+  std::string analog = "WiiMote0";
+};
+
+class HeadServer {
+ public:
+  /// Error(io) if the port is taken, Error(usage) for a name that cannot travel.
+  HeadServer(const vrpn::Address& at, HeadDevices devices);
+
+  /// The channels, and the pose if the report is valid and news: VRPN has no way to say "not valid", so that what is
+  /// not valid is not sent, and a heartbeat never looks like data.
+  void publish(vrpn::Timestamp time, const wii::Channels& channels, const wii::Report& report);
+
+  [[nodiscard]] vrpn::Server& server() { return server_; }
+
+ private:
+  HeadDevices devices_;
+  vrpn::Server server_;
+};
+
+}  // namespace verisim::cli

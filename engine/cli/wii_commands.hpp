@@ -1,0 +1,23 @@
+// What the wii commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/wii/tracker.hpp"
+
+namespace verisim::cli {
+
+void add_wii_track(CLI::App& wii_command, int& exit_code);
+void add_wii_serve(CLI::App& wii_command, int& exit_code);
+void add_wii_listen(CLI::App& wii_command, int& exit_code);
+
+/// All that take one trace: all but stereo.
+[[nodiscard]] std::vector<std::string> trackers_of_one_remote();
+
+/// The columns of a CSV of poses (INTERFACES section 1), and one row of it, numbers as short as reads back to the bit.
+inline constexpr const char* kPoseHeader = "t,valid,px,py,pz,qx,qy,qz,qw,cpx,cpy,cpz,crx,cry,crz\n";
+[[nodiscard]] std::string pose_row(double t, const wii::Report& report);
+
+}  // namespace verisim::cli

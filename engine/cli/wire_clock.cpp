@@ -1,0 +1,37 @@
+#include "engine/cli/wire_clock.hpp"
+
+namespace verisim::cli {
+namespace {
+
+constexpr std::int64_t kMicro = 1'000'000;
+
+std::int64_t total(const vrpn::Timestamp& t) {
+  return std::int64_t{t.seconds} * kMicro + t.microseconds;
+}
+
+vrpn::Timestamp timestamp(std::int64_t microseconds) {
+  return {static_cast<std::uint32_t>(microseconds / kMicro), static_cast<std::uint32_t>(microseconds % kMicro)};
+}
+
+}  // namespace
+
+vrpn::Timestamp wire_time() {
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  return timestamp(std::chrono::duration_cast<std::chrono::microseconds>(since).count());
+}
+
+vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds) {
+  return timestamp(total(begin) + microseconds);
+}
+
+std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end) {
+  return total(end) - total(begin);
+}
+
+StopWatch::StopWatch() : begin_(std::chrono::steady_clock::now()) {}
+
+double StopWatch::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
+}  // namespace verisim::cli

@@ -1,0 +1,90 @@
+// One side of one connection without its sockets: bytes that came in, messages understood, bytes to go out
+// (reference/vrpn_wire, "Connection set-up", "Names and ids", "Channels").
+//
+// A connection belongs to whoever holds it; nothing is shared but the names. A peer that breaks the protocol, or does
+// not read, makes its own connection faulty and nobody else's.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/vrpn/message.hpp"
+
+namespace verisim::vrpn {
+
+/// What one side calls its senders and types: a name's id is its place. The same for all connections of that side, and
+/// not changed while one is open.
+struct Names {
+  std::vector<std::string> senders;
+  std::vector<std::string> types;
+};
+/// Place of a name, or -1.
+[[nodiscard]] std::int32_t id_of(const std::vector<std::string>& names, std::string_view name);
+
+/// A message from the peer whose sender and type the peer has described.
+struct Received {
+  Timestamp time;
+  std::string_view sender;
+  std::string_view type;
+  View payload;
+};
+using Handler = std::function<void(const Received&)>;
+
+/// Where the peer wants datagrams.
+struct UdpEnd {
+  std::string host;  ///< as the peer wrote it; may be a name
+  std::uint16_t port = 0;
+};
+
+class Connection {
+ public:
+  static constexpr std::size_t kUnsentMax = 256 * 1024;  ///< bytes that wait for a peer that does not read
+
+  /// Queues the cookie. `own_udp`: described to the peer once its cookie is there. `names` must outlive this.
+  explicit Connection(const Names& names, std::optional<UdpEnd> own_udp = {});
+
+  /// Bytes from TCP, cut anywhere. Hands every understood message to `handler`; `now` dates what is answered.
+  void receive(View bytes, Timestamp now, const Handler& handler);
+  /// One datagram. One that is malformed is ignored: anyone may have sent it.
+  void receive_datagram(View datagram, const Handler& handler);
+
+  /// Queues a message for TCP. Before established() it is dropped.
+  void send(std::string_view sender, std::string_view type, Timestamp time, View payload);
+  /// The same message as one datagram. @pre established()
+  [[nodiscard]] Bytes datagram(std::string_view sender, std::string_view type, Timestamp time, View payload);
+
+  [[nodiscard]] bool established() const { return established_; }  ///< the peer's cookie was good
+  [[nodiscard]] const std::optional<UdpEnd>& peer_udp() const { return peer_udp_; }
+  [[nodiscard]] bool faulty() const { return !fault_.empty(); }      ///< to be closed
+  [[nodiscard]] const std::string& fault() const { return fault_; }  ///< why, one line
+
+  [[nodiscard]] View unsent() const { return View(out_).subspan(sent_); }
+  /// `bytes` of unsent() have left.
+  void sent(std::size_t bytes);
+
+ private:
+  void take_cookie(Timestamp now);
+  void take_messages(const Handler& handler);
+  void take(const Message& message, const Handler& handler);
+  void describe(std::vector<std::string>& peer_names, const Message& message);
+  void send_system(std::int32_t type, std::int32_t sender, Timestamp time, View payload);
+  void append(const Message& message);
+
+  const Names* names_;
+  std::optional<UdpEnd> own_udp_;
+  std::optional<UdpEnd> peer_udp_;
+  bool established_ = false;
+  std::string fault_;
+  Bytes in_;  ///< at most one message that is not whole yet
+  Bytes out_;
+  std::size_t sent_ = 0;  ///< of out_
+  std::uint32_t tcp_sequence_ = 0;
+  std::uint32_t udp_sequence_ = 0;
+  std::vector<std::string> peer_senders_;  ///< by the peer's id; empty: not described
+  std::vector<std::string> peer_types_;
+};
+
+}  // namespace verisim::vrpn

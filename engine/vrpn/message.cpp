@@ -1,0 +1,68 @@
+#include "engine/vrpn/message.hpp"
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+
+namespace verisim::vrpn {
+namespace {
+
+constexpr std::string_view kMagic = "vrpn: ver. 07.38  0";
+constexpr std::size_t kMagicCompared = 14;  // "vrpn: ver. 07.": any minor version will do
+constexpr std::size_t kLogMode = 18;
+constexpr std::size_t kAlignment = 8;
+
+std::size_t padded(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+}  // namespace
+
+void put_cookie(Bytes& out) {
+  out.insert(out.end(), kMagic.begin(), kMagic.end());
+  out.resize(out.size() + kCookieBytes - kMagic.size());
+}
+
+bool cookie_is_good(View cookie) {
+  VERISIM_ASSERT(cookie.size() == kCookieBytes);
+  const auto same = [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; };
+  return std::equal(kMagic.begin(), kMagic.begin() + kMagicCompared, cookie.begin(), same) && cookie[kLogMode] >= '0' &&
+         cookie[kLogMode] <= '3';
+}
+
+void put_message(Bytes& out, const Message& message) {
+  VERISIM_ASSERT(padded(message.payload.size()) <= kPaddedPayloadMax);
+  const std::size_t begin = out.size();
+  put_uint32(out, static_cast<std::uint32_t>(kHeaderBytes + message.payload.size()));
+  put_uint32(out, message.time.seconds);
+  put_uint32(out, message.time.microseconds);
+  put_int32(out, message.sender);
+  put_int32(out, message.type);
+  put_uint32(out, message.sequence);
+  out.insert(out.end(), message.payload.begin(), message.payload.end());
+  out.resize(begin + padded(out.size() - begin));
+}
+
+Framed first_message(View stream) {
+  Framed framed;
+  Reader header(stream);
+  const std::size_t length = header.uint32();
+  if (!header.ok()) return framed;
+  if (length < kHeaderBytes || padded(length - kHeaderBytes) > kPaddedPayloadMax) {
+    framed.state = Framed::State::malformed;
+    return framed;
+  }
+  framed.bytes = padded(length);
+  if (stream.size() < framed.bytes) return framed;
+  Message& m = framed.message;
+  m.time.seconds = header.uint32();
+  m.time.microseconds = header.uint32();
+  m.sender = header.int32();
+  m.type = header.int32();
+  m.sequence = header.uint32();
+  m.payload = stream.subspan(kHeaderBytes, length - kHeaderBytes);
+  framed.state = Framed::State::whole;
+  return framed;
+}
+
+}  // namespace verisim::vrpn

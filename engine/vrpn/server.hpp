@@ -1,0 +1,79 @@
+// A VRPN server: listens, connects back to who asks by UDP, greets, answers pings, and publishes reports to everyone.
+//
+// One slow, silent or malformed client never disturbs another: no call waits for a client, each has its own bounded
+// queue and is closed alone, and each turn reads at most kReadMax bytes from each. Not thread-safe; reads no clock.
+// Source: reference/vrpn_wire. Every error on a client's side ends that client; construction alone can fail.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/vrpn/connection.hpp"
+#include "engine/vrpn/socket.hpp"
+
+namespace verisim::vrpn {
+
+class Server {
+ public:
+  static constexpr std::size_t kClientsMax = 255;
+  static constexpr std::size_t kReadMax = 64 * 1024;  ///< bytes of one client in one turn
+  static constexpr std::uint32_t kGreetingMax = 10;   ///< s that a client may take to send its cookie
+
+  /// Listens at `at` on TCP and UDP; port 0 takes one that is free for both. `devices` and `types` are the names that
+  /// this server sends; ping and pong are added. Error(io) if the port is taken.
+  Server(const Address& at, std::vector<std::string> devices, std::vector<std::string> types);
+
+  /// Called with what a client sends to one of our devices, pings excepted. `reply` answers that client alone.
+  using Reply = std::function<void(std::string_view type, View payload)>;
+  using RequestHandler = std::function<void(const Received& request, const Reply& reply)>;
+  void on_request(RequestHandler handler) { request_handler_ = std::move(handler); }
+
+  /// Waits up to `wait_ms` for something to happen, and deals with everything that has.
+  void turn(Timestamp now, int wait_ms);
+  /// To all clients: as a datagram to those that asked for datagrams, else by TCP. Leaves with the next turn at the
+  /// latest.
+  void publish(std::string_view device, std::string_view type, Timestamp time, View payload);
+
+  [[nodiscard]] const Address& address() const { return address_; }
+  /// Clients whose cookie has come.
+  [[nodiscard]] std::size_t clients() const;
+  /// Bytes that wait for the slowest of them.
+  [[nodiscard]] std::size_t unsent() const;
+  /// One line for each client that came or went since the last call.
+  [[nodiscard]] std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
+
+ private:
+  struct Client {
+    Socket socket;
+    Address address;
+    bool connecting = false;  ///< back to one who asked by UDP
+    bool direct = false;      ///< came by TCP: never uses UDP
+    bool greeted = false;     ///< its coming was noted
+    bool gone = false;
+    std::uint32_t since = 0;  ///< s
+    Connection connection;
+  };
+
+  void listen(const Address& at);
+  void take_requests(Timestamp now);
+  void accept_all(Timestamp now);
+  void add(Socket socket, const Address& address, bool direct, Timestamp now);
+  void read(Client& client, Timestamp now);
+  void take(Client& client, Timestamp now, const Received& message);
+  void write(Client& client);
+  void judge(Client& client, Timestamp now);
+  void close_gone();
+  [[nodiscard]] std::optional<Address> udp_end(const Client& client) const;
+
+  Names names_;
+  Socket tcp_;
+  Socket udp_;
+  Address address_;
+  RequestHandler request_handler_;
+  std::vector<std::unique_ptr<Client>> clients_;
+  std::vector<std::string> notices_;
+  Bytes buffer_;
+};
+
+}  // namespace verisim::vrpn
