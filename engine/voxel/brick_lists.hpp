@@ -21,7 +21,10 @@ struct GridMesh {
   }
 };
 
-/// For every brick the triangles, ascending, that touch it (grown by kCandidateMargin; a few more may be listed).
+/// The mesh in the grid coordinates of a map.
+[[nodiscard]] GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map);
+
+/// For every brick the triangles, ascending, that touch it (grown by a margin; a few more may be listed).
 struct BrickLists {
   std::vector<std::uint32_t> begin;     // (bricks + 1)  -  the brick's first entry in `triangle`
   std::vector<std::uint32_t> triangle;  // (entries)     -
@@ -31,8 +34,10 @@ struct BrickLists {
   [[nodiscard]] bool empty(std::size_t brick) const { return begin[brick] == begin[brick + 1]; }
 };
 
-/// @pre every vertex lies within the grid of `bricks` bricks
-[[nodiscard]] BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks);
+/// @param margin  by how much bricks are grown [voxel]
+/// @pre every vertex lies within the grid of `bricks` bricks, and farther than the margin from its walls
+[[nodiscard]] BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks,
+                                                 double margin = kCandidateMargin);
 
 /// Lower corner of a brick [voxel].
 [[nodiscard]] inline Eigen::Vector3i brick_corner(std::size_t brick, const Eigen::Vector3i& bricks) {

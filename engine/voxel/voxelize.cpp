@@ -8,13 +8,6 @@ namespace verisim {
 
 namespace {
 
-GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map) {
-  GridMesh result{.vertices = {}, .triangles = &mesh.triangles};
-  result.vertices.reserve(mesh.vertices.size());
-  for (const Vector3d& p_B : mesh.vertices) result.vertices.push_back((p_B - map.origin) / map.voxel_size);
-  return result;
-}
-
 double result_bytes(const SurfaceVoxels& surface, std::size_t blocks) {
   return static_cast<double>(surface.voxels) * 6 * sizeof(float) +
          static_cast<double>(surface.brick.size() * sizeof(Pointshell::Cluster)) +

@@ -1,0 +1,67 @@
+#include "tests/voxel/kernel_shapes.hpp"
+
+#include <BRepBndLib.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <STEPControl_Reader.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <limits>
+
+#include "engine/base/error.hpp"
+#include "engine/geometry/cad/shapes.hpp"
+
+namespace verisim::test {
+
+namespace {
+
+constexpr double kUnit = 1 / cad::kMillimetresPerMetre;
+
+KernelPart from_shape(const TopoDS_Shape& shape, const std::string& name) {
+  KernelPart result;
+  result.part = cad::part_from({shape, name, {}, {}}, {.path = name, .angular_deflection = 0.1});
+  result.part.watertight = true;
+  TopTools_IndexedMapOfShape faces, edges;
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
+  for (int i = 1; i <= faces.Extent(); ++i) result.entities.push_back(faces(i));
+  for (TopExp_Explorer e(shape, TopAbs_EDGE); e.More(); e.Next()) {
+    if (!BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) edges.Add(e.Current());
+  }
+  for (int i = 1; i <= edges.Extent(); ++i) result.entities.push_back(edges(i));
+  VERISIM_ASSERT(result.entities.size() == result.part.faces.size() + result.part.edges.size());
+  return result;
+}
+
+}  // namespace
+
+KernelPart kernel_part_of(const Solid& solid) {
+  return from_shape(cad::shape_from(solid), "solid");
+}
+
+KernelPart kernel_part_of_file(const std::string& path, int index) {
+  STEPControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) fail(ErrorKind::input, "{}: cannot be read", path);
+  reader.TransferRoots();
+  TopExp_Explorer solids(reader.OneShape(), TopAbs_SOLID);
+  for (int i = 0; i < index && solids.More(); ++i) solids.Next();
+  if (!solids.More()) fail(ErrorKind::input, "{}: has no solid {}", path, index);
+  return from_shape(solids.Current(), path);
+}
+
+double kernel_distance(const TopoDS_Shape& entity, const Vector3d& center, double half_side) {
+  const Vector3d low = (center - Vector3d::Constant(half_side)) / kUnit;
+  const Vector3d high = (center + Vector3d::Constant(half_side)) / kUnit;
+  const gp_Pnt low_corner(low.x(), low.y(), low.z()), high_corner(high.x(), high.y(), high.z());
+  Bnd_Box around_entity, around_voxel;
+  BRepBndLib::Add(entity, around_entity, /*useTriangulation=*/Standard_False);
+  around_voxel.Update(low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  if (around_entity.IsOut(around_voxel)) return std::numeric_limits<double>::infinity();
+  BRepExtrema_DistShapeShape distance(BRepPrimAPI_MakeBox(low_corner, high_corner).Solid(), entity);
+  VERISIM_ASSERT(distance.IsDone());
+  return kUnit * distance.Value();
+}
+
+}  // namespace verisim::test
