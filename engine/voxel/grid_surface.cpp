@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kDiagonal = 1.7320508075688772;  // half diagonal of a box per half side
 constexpr double kSmallestHalf = 0x1p-22;         // boxes are not halved further: what is undecided here touches
+constexpr double kOffSurface = 1e-6;              // voxel: rounding stays far below
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Matrix3d rows(const Vector3d& x, const Vector3d& z) {
@@ -52,7 +53,8 @@ void for_each_box_edge(const GridBox& box, Visit visit) {
 
 }  // namespace
 
-GridSurface::GridSurface(const Surface& surface, const Vector3d& origin, double scale) {
+GridSurface::GridSurface(const Face& face, const Vector3d& origin, double scale) {
+  const Surface& surface = face.surface;
   const auto place = [&](Shape shape, const Vector3d& point, const Vector3d& x, const Vector3d& z) {
     shape_ = shape;
     origin_ = scale * (point - origin);
@@ -75,11 +77,13 @@ GridSurface::GridSurface(const Surface& surface, const Vector3d& origin, double 
     place(Shape::torus, torus->center, torus->x_axis, torus->direction);
     radius_ = scale * torus->major_radius;
     minor_ = scale * torus->minor_radius;
+    const double middle = 0.5 * (face.v_range[0] + face.v_range[1]);
+    if (radius_ + minor_ * pinned::cos(middle) < 0) radius_ = -radius_;
   }
   plane_extent_ = axes_.row(2).cwiseAbs().sum();
   const bool is_finite = origin_.allFinite() && axes_.allFinite() && std::isfinite(radius_ + minor_ + sine_ + cosine_);
-  const bool fits = radius_ >= 0 && minor_ >= 0 && (shape_ != Shape::torus || minor_ < radius_) &&
-                    (shape_ != Shape::cone || (sine_ > 0 && cosine_ > 0));
+  const bool fits =
+      (radius_ >= 0 || shape_ == Shape::torus) && minor_ >= 0 && (shape_ != Shape::cone || (sine_ > 0 && cosine_ > 0));
   if (!is_finite || !fits) shape_ = Shape::other;
 }
 
@@ -244,6 +248,12 @@ bool GridSurface::torus_touches(const GridBox& box, std::array<bool, 2>& signs) 
   return touches;
 }
 
+/// A cone's height where it meets its axis; of a torus that meets itself, half the distance of the two places.
+double GridSurface::axis_meeting() const {
+  if (shape_ == Shape::cone) return -radius_ * cosine_ / sine_;
+  return std::sqrt(std::max(minor_ * minor_ - radius_ * radius_, 0.0));
+}
+
 bool GridSurface::is_one_sheet(const Vector3d& center, double distance) const {
   switch (shape_) {
     case Shape::plane:
@@ -254,7 +264,8 @@ bool GridSurface::is_one_sheet(const Vector3d& center, double distance) const {
     case Shape::cone:
       return from_axis(to_local(center)) > 3 * distance;
     case Shape::torus:
-      return std::min(minor_, radius_ - minor_) > distance;
+      if (minor_ >= std::abs(radius_) && from_axis(to_local(center)) <= 3 * distance) return false;  // near its tips
+      return minor_ > distance && (minor_ >= std::abs(radius_) || radius_ - minor_ > distance);
     case Shape::other:
       break;
   }
@@ -263,9 +274,9 @@ bool GridSurface::is_one_sheet(const Vector3d& center, double distance) const {
 
 Vector3d GridSurface::projected(const Vector3d& local) const {
   const Vector3d foot = local - value(local) * gradient(local);
-  if (shape_ == Shape::cone) {
-    const double apex = -radius_ * cosine_ / sine_;
-    if (foot.z() < apex) return {0, 0, apex};
+  if (shape_ == Shape::cone && foot.z() < axis_meeting()) return {0, 0, axis_meeting()};
+  if (shape_ == Shape::torus && std::abs(value(foot)) > kOffSurface) {  // beyond the axis, where it meets itself
+    return {0, 0, local.z() < 0 ? -axis_meeting() : axis_meeting()};
   }
   return foot;
 }
@@ -326,18 +337,23 @@ void GridSurface::add_roots(const GridBox& box, const Vector3d& start, int axis,
 }
 
 /// Where a piece lies within a wall of the box without reaching the wall's rim, it has a point whose normal is a grid
-/// axis (sphere, torus), surrounds the axis (cylinder, cone), or holds the apex.
+/// axis (sphere, torus), surrounds the axis (cylinder, cone), or holds a place where the surface meets its axis.
 void GridSurface::add_extremes(const GridBox& box, std::vector<Vector3d>& probes) const {
   const auto add = [&](const Vector3d& local) {
-    if (box.contains(origin_ + axes_.transpose() * local)) probes.push_back(local);
+    const bool is_on = std::abs(value(local)) <= kOffSurface;
+    if (is_on && box.contains(origin_ + axes_.transpose() * local)) probes.push_back(local);
   };
   if (shape_ == Shape::cylinder || shape_ == Shape::cone) {
     for_each_axis_entry(box, [&](const Vector3d& p, int axis) {
       add_roots(box, p, (axis + 1) % 3, probes);
       add_roots(box, p, (axis + 2) % 3, probes);
     });
-    if (shape_ == Shape::cone) add({0, 0, -radius_ * cosine_ / sine_});
+    if (shape_ == Shape::cone) add({0, 0, axis_meeting()});
     return;
+  }
+  if (shape_ == Shape::torus && minor_ > std::abs(radius_)) {
+    add({0, 0, axis_meeting()});
+    add({0, 0, -axis_meeting()});
   }
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d direction = axes_.col(axis);

@@ -2,7 +2,8 @@
 // passes through a box, and points of it there, in closed form.
 //
 // Every surface is the zero set of a function with slope at most one: plane z, cylinder rho - r, cone
-// cos a (rho - r) - sin a z, sphere |p| - r, torus |(rho - R, z)| - r, in the face's own frame (z its axis or normal,
+// cos a (rho - r) - sin a z, sphere |p| - r, torus |(rho - R, z)| - r (with -R on the inside of a tube wider than
+// its ring), in the face's own frame (z its axis or normal,
 // rho the distance from it). A connected box is met where the function changes its sign or is zero. All but the torus's
 // are convex: their largest value in a box is at a corner; the smallest is on an edge of the box, or where the axis
 // enters it. The torus is searched by halving boxes until slope and curvature decide.
@@ -21,9 +22,9 @@ class GridSurface {
  public:
   enum class Shape { plane, cylinder, cone, sphere, torus, other };
 
-  /// Grid coordinates are (p - origin) * scale. A torus that meets itself, and a surface with a number that is not
-  /// finite or a radius that is negative, is `other`.
-  GridSurface(const Surface& surface, const Vector3d& origin, double scale);
+  /// Grid coordinates are (p - origin) * scale. Of a torus that meets itself, the part outside or the part inside,
+  /// where the face is. A surface with a number that is not finite or a radius that is negative is `other`.
+  GridSurface(const Face& face, const Vector3d& origin, double scale);
 
   [[nodiscard]] Shape shape() const { return shape_; }
   /// Rows: the frame's x, y and z axis. Local coordinates of p are axes (p - origin).
@@ -57,6 +58,7 @@ class GridSurface {
   [[nodiscard]] bool sphere_touches(const GridBox& box) const;
   [[nodiscard]] bool convex_touches(const GridBox& box) const;
   [[nodiscard]] bool torus_touches(const GridBox& box, std::array<bool, 2>& signs) const;
+  [[nodiscard]] double axis_meeting() const;
   [[nodiscard]] double lowest_on_line(const Vector3d& local, const Vector3d& step, double half) const;
   template <class Visit>
   void for_each_axis_entry(const GridBox& box, Visit visit) const;

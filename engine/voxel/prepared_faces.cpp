@@ -155,7 +155,7 @@ class Preparation {
   [[nodiscard]] PreparedFace prepare(std::size_t index) const {
     const Face& face = part_.faces[index];
     PreparedFace result;
-    result.surface = std::make_unique<GridSurface>(face.surface, map_.origin, scale_);
+    result.surface = std::make_unique<GridSurface>(face, map_.origin, scale_);
     if (result.surface->shape() == GridSurface::Shape::other) return by_triangles(std::move(result), false);
     const double deflection = deflection_of(index, *result.surface);
     result.deflection = kSafety * deflection + kCandidateMargin;

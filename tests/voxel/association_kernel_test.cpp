@@ -128,7 +128,7 @@ void compare(const test::KernelPart& model, const VoxelBody& body, const Eigen::
   std::vector<EntityNumber> passing;
   bool undecided = false;
   for (EntityNumber e = 0; e < model.entities.size(); ++e) {
-    const double distance = test::kernel_distance(model.entities[e], center, 0.5 * size);
+    const double distance = test::kernel_distance(model, e, center, 0.5 * size);
     if (std::isfinite(distance)) ++compared.distances;
     if (distance < kKernelZero) passing.push_back(e);
     const double doubt = is_by_triangles(model.part, e) ? 1.1 * deflection : kTouchTolerance * size;
@@ -166,7 +166,7 @@ class Association : public ::testing::TestWithParam<Case> {
           Vector3f(body.shell.x[i], body.shell.y[i], body.shell.z[i]).cast<double>() + body.shell.reference;
       (body.features.sets[body.shell.features[i]].size() == 1 ? plain : mixed).push_back(body.voxmap.cell_of(p));
     }
-    const std::size_t wanted = is_long() ? 2000 : 40;
+    const std::size_t wanted = is_long() ? 2000 : 25;
     Compared compared;
     test::Inputs inputs(7);
     for (const std::vector<Eigen::Vector3i>* cells : {&plain, &mixed}) {

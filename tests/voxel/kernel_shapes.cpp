@@ -8,6 +8,7 @@
 #include <STEPControl_Reader.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <limits>
 
@@ -31,6 +32,13 @@ KernelPart from_shape(const TopoDS_Shape& shape, const std::string& name) {
     if (!BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) edges.Add(e.Current());
   }
   for (int i = 1; i <= edges.Extent(); ++i) result.entities.push_back(edges(i));
+  for (const TopoDS_Shape& entity : result.entities) {
+    constexpr double kGap = 1e-3;  // mm
+    Bnd_Box box;                   // the quick one is too small around some faces on tori
+    BRepBndLib::AddOptimal(entity, box, /*useTriangulation=*/Standard_False);
+    box.Enlarge(kGap);
+    result.boxes.push_back(box);
+  }
   VERISIM_ASSERT(result.entities.size() == result.part.faces.size() + result.part.edges.size());
   return result;
 }
@@ -51,15 +59,14 @@ KernelPart kernel_part_of_file(const std::string& path, int index) {
   return from_shape(solids.Current(), path);
 }
 
-double kernel_distance(const TopoDS_Shape& entity, const Vector3d& center, double half_side) {
+double kernel_distance(const KernelPart& part, std::size_t number, const Vector3d& center, double half_side) {
   const Vector3d low = (center - Vector3d::Constant(half_side)) / kUnit;
   const Vector3d high = (center + Vector3d::Constant(half_side)) / kUnit;
+  Bnd_Box voxel;
+  voxel.Update(low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  if (part.boxes[number].IsOut(voxel)) return std::numeric_limits<double>::infinity();
   const gp_Pnt low_corner(low.x(), low.y(), low.z()), high_corner(high.x(), high.y(), high.z());
-  Bnd_Box around_entity, around_voxel;
-  BRepBndLib::Add(entity, around_entity, /*useTriangulation=*/Standard_False);
-  around_voxel.Update(low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
-  if (around_entity.IsOut(around_voxel)) return std::numeric_limits<double>::infinity();
-  BRepExtrema_DistShapeShape distance(BRepPrimAPI_MakeBox(low_corner, high_corner).Solid(), entity);
+  BRepExtrema_DistShapeShape distance(BRepPrimAPI_MakeBox(low_corner, high_corner).Solid(), part.entities[number]);
   VERISIM_ASSERT(distance.IsDone());
   return kUnit * distance.Value();
 }

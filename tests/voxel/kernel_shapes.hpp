@@ -2,7 +2,7 @@
 // the tests that compare with the kernel include this.
 #pragma once
 
-#include <TopTools_IndexedMapOfShape.hxx>
+#include <Bnd_Box.hxx>
 #include <TopoDS_Shape.hxx>
 #include <string>
 #include <vector>
@@ -16,6 +16,7 @@ namespace verisim::test {
 struct KernelPart {
   Part part;
   std::vector<TopoDS_Shape> entities;  ///< in millimetres
+  std::vector<Bnd_Box> boxes;          ///< around the entities
 };
 
 [[nodiscard]] KernelPart kernel_part_of(const Solid& solid);
@@ -23,7 +24,8 @@ struct KernelPart {
 /// The solid number `index` of a STEP file.
 [[nodiscard]] KernelPart kernel_part_of_file(const std::string& path, int index = 0);
 
-/// Distance of an entity from a closed box [m], as the kernel finds it; infinite if their own boxes are apart.
-[[nodiscard]] double kernel_distance(const TopoDS_Shape& entity, const Vector3d& center, double half_side);
+/// Distance of entity `number` from a closed box [m], as the kernel finds it; infinite if their own boxes are apart.
+[[nodiscard]] double kernel_distance(const KernelPart& part, std::size_t number, const Vector3d& center,
+                                     double half_side);
 
 }  // namespace verisim::test
