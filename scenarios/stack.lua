@@ -5,11 +5,13 @@ local p = params{
   voxelsize = 0.005,        -- m
   gap = 0.02,               -- m, between the boxes at the start
   duration = 2,             -- s
+  hybrid = "off",
   integrator = "semi-implicit",
 }
 
 defineSimulationParameters{
   allBodiesAreDynamic = true, gravity = {0, 0, -9.81}, duration = p.duration, integrator = p.integrator,
+  hybrid = p.hybrid,
 }
 
 addObject{name = "plate", fixed = true, voxelsize = p.voxelsize, Solid.box{0.4, 0.4, 0.02}}

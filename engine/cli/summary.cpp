@@ -51,13 +51,19 @@ Summary summarize(const Session& session, LoopResult& loop, const std::string& r
   s.frames = loop.frame_ns.size();
   s.collision_frames = simulation.collision_frames();
   s.overruns = loop.overruns;
-  s.cache_hits = simulation.totals().cache_hits;
-  s.cache_misses = simulation.totals().cache_misses;
+  const Simulation::Totals& totals = simulation.totals();
+  s.collisions = totals.contacts;
+  s.cache_hits = totals.cache_hits;
+  s.cache_misses = totals.cache_misses;
+  s.null_misses = totals.null_misses;
+  for (std::size_t kind = 1; kind < kConstraintKindNames.size(); ++kind)
+    if (totals.constraint_frames[kind] > 0)
+      s.constraints.emplace_back(kConstraintKindNames[kind], totals.constraint_frames[kind]);
   s.simulated_s = static_cast<double>(s.frames) * simulation.dt();
   s.wall_s = loop.wall_s;
   s.load_s = session.load_s;
-  s.force_max = simulation.totals().force_max;
-  s.penetration_max = simulation.totals().penetration_max;
+  s.force_max = totals.force_max;
+  s.penetration_max = totals.penetration_max;
   s.frame_ns = times_of(loop.frame_ns);
   s.collision_frame_ns = times_of(loop.collision_frame_ns);
   s.measures = session.scenario->measures();
@@ -75,9 +81,12 @@ std::string to_json(const Summary& s) {
   j["realtime_factor"] = realtime_factor(s);
   j["collision_frames"] = s.collision_frames;
   j["overruns"] = s.overruns;
+  j["collisions"] = s.collisions;
   j["cache_hits"] = s.cache_hits;
   j["cache_misses"] = s.cache_misses;
+  j["null_misses"] = s.null_misses;
   j["constraints"] = ordered_json::object();
+  for (const auto& [name, frames] : s.constraints) j["constraints"][name] = frames;
   j["max_force_N"] = s.force_max;
   j["max_penetration_m"] = s.penetration_max;
   j["outcome"] = s.outcome;
@@ -102,6 +111,10 @@ std::string to_table(const Summary& s) {
   row("frames", fmt::format("{} ({:.3f} s simulated in {:.3f} s, {:.0f} x real time; loaded in {:.2f} s)", s.frames,
                             s.simulated_s, s.wall_s, realtime_factor(s), s.load_s));
   row("with contact", fmt::format("{}", s.collision_frames));
+  for (const auto& [name, frames] : s.constraints) row(name.c_str(), fmt::format("constraint in {} frames", frames));
+  if (s.cache_hits + s.cache_misses > 0)
+    row("look-ups", fmt::format("{} memoized, {} recognized ({} of them to no constraint)", s.cache_hits,
+                                s.cache_misses, s.null_misses));
   row("overruns", fmt::format("{}", s.overruns));
   row("frame", times(s.frame_ns));
   if (s.collision_frames > 0) row("frame with contact", times(s.collision_frame_ns));
@@ -125,6 +138,8 @@ std::map<std::string, Attribute> to_attributes(const Summary& s) {
                                      {"overruns", count(s.overruns)},
                                      {"cache_hits", count(s.cache_hits)},
                                      {"cache_misses", count(s.cache_misses)},
+                                     {"null_misses", count(s.null_misses)},
+                                     {"collisions", count(s.collisions)},
                                      {"max_force_N", s.force_max},
                                      {"max_penetration_m", s.penetration_max},
                                      {"outcome", s.outcome},

@@ -87,7 +87,7 @@ void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const
   apply_penalty(contacts_, about_, {R_MW * relative.head<3>(), R_MW * relative.tail<3>()}, stiffness_, damping_);
 }
 
-void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool matrices) {
+void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, Matrices matrices) {
   if (contacts_.size == 0) return;
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
@@ -100,7 +100,8 @@ void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool m
   depth_max_ = total.depth_max;
   on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
   on_map.wrench = {-on_points.wrench.force, -(on_points.wrench.torque + arm.cross(on_points.wrench.force))};
-  if (!matrices) return;
+  if (matrices == Matrices::none) return;
+  if (matrices == Matrices::turned) W_ = contact_matrix(contacts_, about_);
 
   const Matrix6d W_points = rotated(W_, R_WM);
   const Matrix6d T = shift_of_arm(arm);

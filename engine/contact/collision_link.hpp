@@ -49,8 +49,10 @@ class CollisionLink {
 
   /// Response, part one: stiffness by the stability rule and a penalty force for every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
-  /// Response, part two: sums what the contacts' forces now are. `matrices`: fill stiffness, damping and drift too.
-  void sum_up(const LinkBody& first, const LinkBody& second, bool matrices);
+  /// Response, part two: sums what the contacts' forces now are. Matrices: also stiffness, damping and drift; `turned`
+  /// if somebody changed the contacts' normals since respond().
+  enum class Matrices : std::uint8_t { none, as_found, turned };
+  void sum_up(const LinkBody& first, const LinkBody& second, Matrices matrices);
 
   [[nodiscard]] const LinkSide& on_first() const { return on_first_; }
   [[nodiscard]] const LinkSide& on_second() const { return on_second_; }

@@ -79,80 +79,86 @@ StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
 
 namespace {
 
-/// The coupling, linear in the step's end: spring and damper at its start, stiffness and damping of each.
-struct LinearCoupling {
-  Vector6d spring = Vector6d::Zero();
-  Vector6d damper = Vector6d::Zero();
-  Matrix6d K = Matrix6d::Zero();
-  Matrix6d D = Matrix6d::Zero();
-};
-
-/// A force or torque that would exceed its limit at the present velocity is a constant instead.
-LinearCoupling linearized(const RigidBody& body, const Loads& loads, double dt) {
-  LinearCoupling c;
-  if (loads.coupling == nullptr) return c;
+/// The coupling, linear in the step's end. A force or torque that would exceed its limit at the present velocity is a
+/// constant instead.
+void linearize(const RigidBody& body, const Loads& loads, double dt, ImplicitStep& step) {
+  if (loads.coupling == nullptr) return;
   const Coupling& coupling = *loads.coupling;
   const CouplingForce& start = loads.coupling_at_start;
-  c.spring = stacked(start.spring);
-  c.damper = stacked(start.damper);
+  step.spring = stacked(start.spring);
+  step.damper = stacked(start.damper);
   const Wrench ahead{start.spring.force - dt * coupling.stiffness * body.v_C,
                      start.spring.torque - dt * coupling.angular_stiffness * body.omega};
   const Wrench limited = damper_and_clutch(coupling, ahead, start.damper);
   if (limited.force == start.damper.force) {
-    c.K.topLeftCorner<3, 3>().diagonal().setConstant(coupling.stiffness);
-    c.D.topLeftCorner<3, 3>().diagonal().setConstant(coupling.damping);
+    step.K.topLeftCorner<3, 3>().diagonal().setConstant(coupling.stiffness);
+    step.D.topLeftCorner<3, 3>().diagonal().setConstant(coupling.damping);
   } else {
-    c.damper.head<3>() = ahead.force + limited.force - start.spring.force;
+    step.damper.head<3>() = ahead.force + limited.force - start.spring.force;
   }
   if (limited.torque == start.damper.torque) {
     const Matrix3d R = body.R_WB.toRotationMatrix();
-    c.K.bottomRightCorner<3, 3>().diagonal().setConstant(coupling.angular_stiffness);
-    c.D.bottomRightCorner<3, 3>() = R * coupling.angular_damping_B * R.transpose();
+    step.K.bottomRightCorner<3, 3>().diagonal().setConstant(coupling.angular_stiffness);
+    step.D.bottomRightCorner<3, 3>() = R * coupling.angular_damping_B * R.transpose();
   } else {
-    c.damper.tail<3>() = ahead.torque + limited.torque - start.spring.torque;
+    step.damper.tail<3>() = ahead.torque + limited.torque - start.spring.torque;
   }
-  return c;
+}
+
+/// What the contact in the loads has become by the end of the step.
+Vector6d contact_at_end(const RigidBody& body, const Loads& loads, const Vector6d& u1, double dt) {
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  return stacked(loads.contact) + dt * (loads.contact_drift - loads.contact_stiffness * u1) -
+         loads.contact_damping * (u1 - u0);
+}
+
+/// A u1 = b of all loads, the contact in them with or without.
+void assemble(const RigidBody& body, const Loads& loads, double dt, bool with_contact, ImplicitStep& step) {
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  Matrix6d M = Matrix6d::Zero();
+  M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
+  M.bottomRightCorner<3, 3>() = body.inertia_W();
+  // f1 = f0 - dt K u1 - D (u1 - u0) for each load; collected for u1.
+  step.A = M + dt * step.D + dt * dt * step.K;
+  step.b = M * u0 + dt * (stacked(loads.external) + step.spring + step.damper + step.D * u0);
+  step.with_contact = with_contact;
+  if (with_contact) {
+    step.A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
+    step.b += dt * (stacked(loads.contact) + dt * loads.contact_drift + loads.contact_damping * u0);
+  }
+  step.free = step.A.llt().solve(step.b);
 }
 
 }  // namespace
 
-StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
-  const double energy_before = stored_before(body, loads);
-  const LinearCoupling coupling = linearized(body, loads, dt);
-  const Vector6d u0 = stacked(body.v_C, body.omega);
-  const Vector6d contact0 = stacked(loads.contact);
-
-  Matrix6d M = Matrix6d::Zero();
-  M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
-  M.bottomRightCorner<3, 3>() = body.inertia_W();
-
-  // f1 = f0 - dt K u1 - D (u1 - u0) for each load; collected for u1.
-  const auto solve = [&](bool with_contact) {
-    Matrix6d A = M + dt * coupling.D + dt * dt * coupling.K;
-    Vector6d rhs = M * u0 + dt * (stacked(loads.external) + coupling.spring + coupling.damper + coupling.D * u0);
-    if (with_contact) {
-      A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
-      rhs += dt * (contact0 + dt * loads.contact_drift + loads.contact_damping * u0);
-    }
-    return Vector6d(A.llt().solve(rhs));
-  };
+ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt) {
+  ImplicitStep step;
+  linearize(body, loads, dt, step);
   const bool touching = !loads.contact_stiffness.isZero(0) || !loads.contact_damping.isZero(0);
-  Vector6d u1 = solve(touching);
-  const auto contact_at_end = [&](const Vector6d& u) {
-    return Vector6d(contact0 + dt * (loads.contact_drift - loads.contact_stiffness * u) -
-                    loads.contact_damping * (u - u0));
-  };
-  Vector6d contact1 = contact_at_end(u1);
+  assemble(body, loads, dt, touching, step);
+  if (!touching) return step;
   // A contact pushes; one that would pull by the end of the step has let go. M^-1 weighs forces against torques, so
   // that the answer does not depend on the unit of length.
-  if (touching && contact1.dot(body.inverse_mass_matrix() * contact0) <= 0) {
-    u1 = solve(false);
-    contact1.setZero();
-  }
-  const Wrench spring = wrench_of(coupling.spring - dt * (coupling.K * u1));
-  const Wrench damper = wrench_of(coupling.damper + coupling.D * (u0 - u1));
+  const Vector6d contact1 = contact_at_end(body, loads, step.free, dt);
+  if (contact1.dot(body.inverse_mass_matrix() * stacked(loads.contact)) <= 0) assemble(body, loads, dt, false, step);
+  return step;
+}
+
+StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
+                      const Wrench& solved, double dt) {
+  const double energy_before = stored_before(body, loads);
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  Wrench contact = solved;
+  if (step.with_contact) contact += wrench_of(contact_at_end(body, loads, u1, dt));
+  const Wrench spring = wrench_of(step.spring - dt * (step.K * u1));
+  const Wrench damper = wrench_of(step.damper + step.D * (u0 - u1));
   const Motion motion = advance(body, u1, dt);
-  return account(body, loads, motion, spring, damper, wrench_of(contact1), energy_before, dt);
+  return account(body, loads, motion, spring, damper, contact, energy_before, dt);
+}
+
+StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
+  const ImplicitStep step = begin_implicit(body, loads, dt);
+  return end_implicit(body, loads, step, step.free, {}, dt);
 }
 
 }  // namespace verisim

@@ -47,4 +47,19 @@ struct StepWork {
 [[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
 [[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
 
+/// The implicit step in two halves, for contacts that are solved between them (engine/exact): all of the loads are in
+/// A u1 = b, so that u1 = A^-1 b is the velocity without those contacts.
+struct ImplicitStep {
+  Matrix6d A = Matrix6d::Zero();  ///< M + dt D + dt^2 K
+  Vector6d b = Vector6d::Zero();
+  Vector6d free = Vector6d::Zero();                               ///< A^-1 b
+  Vector6d spring = Vector6d::Zero(), damper = Vector6d::Zero();  ///< of the coupling, at the start
+  Matrix6d K = Matrix6d::Zero(), D = Matrix6d::Zero();            ///< of the coupling
+  bool with_contact = false;                                      ///< loads.contact is in A and b
+};
+[[nodiscard]] ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt);
+/// Moves the body with u1. `solved` is what the contacts solved in between did to it: dt solved = A u1 - b.
+[[nodiscard]] StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
+                                    const Wrench& solved, double dt);
+
 }  // namespace verisim

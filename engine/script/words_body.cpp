@@ -122,16 +122,16 @@ int set_orientation(lua_State* L) {
   return 0;
 }
 
-// While the scene is built it is part of the description; later it can only be written down.
 int set_hybrid_enabled(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   const std::size_t body = body_at(L, 1);
   const bool enabled = boolean_at(L, 2, "setHybridEnabled: the switch");
   BodyDescription& description = state.described_body(body);
   if (state.simulation == nullptr) {
-    description.hybrid = enabled ? std::optional<Hybrid>{} : Hybrid::off;
+    description.hybrid_enabled = enabled;
     return 0;
   }
+  state.simulation->set_hybrid_enabled(body, enabled);
   state.event("hybrid", fmt::format("{} {}", description.name, enabled ? "on" : "off"));
   return 0;
 }

@@ -8,8 +8,7 @@
 namespace verisim {
 namespace {
 
-const std::vector<std::string> kConstraintNames = {"none",      "planar",  "cylindrical", "conical",
-                                                   "spherical", "annular", "other"};
+const std::vector<std::string> kConstraintNames(kConstraintKindNames.begin(), kConstraintKindNames.end());
 
 /// Appends values to a row in the order of the schema's columns.
 class RowWriter {
@@ -58,7 +57,8 @@ void Simulation::Implementation::make_schema() {
   }
   for (const Link& link : links) {
     const std::string path = "/state/link/" + bodies[link.first].name + "~" + bodies[link.second].name;
-    add(path + "/contacts", Dtype::u32, 1, "1", "colliding voxel pairs");
+    add(path + "/contacts", Dtype::u32, 1, "1",
+        "colliding voxel pairs; places of precise contact where the method is exact");
     add(path + "/cache_hits", Dtype::u32, 1, "1", "constraint look-ups that were memoized");
     add(path + "/cache_misses", Dtype::u32, 1, "1", "constraint look-ups that had to be recognized");
     schema.add({path + "/constraint", Dtype::u8, 1, "1", "strongest recognized constraint", 0, kConstraintNames});
@@ -79,6 +79,8 @@ void Simulation::Implementation::make_schema() {
   add("/cost/contacts", Dtype::u32, 1, "1", "contacts found");
   add("/cost/lookups", Dtype::u32, 1, "1", "pairs of feature sets looked up");
   add("/cost/recognitions", Dtype::u32, 1, "1", "pairs of feature sets recognized");
+  add("/cost/exact_samples", Dtype::u32, 1, "1", "samples of precise edges tried against precise faces");
+  add("/cost/solver_steps", Dtype::u32, 1, "1", "Newton iterations of the exact response");
   row.assign(schema.row_bytes(), std::byte{0});
 }
 
@@ -97,14 +99,13 @@ void Simulation::Implementation::fill_row() {
     out.put(device->rendered());
   }
   for (const Link& link : links) {
-    const CollisionLink* contact = link.contact.get();
-    out.put(contact != nullptr ? contact->contacts().size : 0U);
+    out.put(link.contacts);
     out.put(link.cache_hits);
     out.put(link.cache_misses);
-    out.put(std::uint8_t{0});
-    out.put(0.0);
-    out.put(contact != nullptr ? contact->depth_max() : 0.0);
-    out.put(contact != nullptr ? contact->on_second().wrench : Wrench{});
+    out.put(static_cast<std::uint8_t>(link.constraint));
+    out.put(link.alpha);
+    out.put(link.depth_max);
+    out.put(link.on_second);
   }
   for (const double e : {energy.kinetic, energy.coupling, energy.gravity, ledger.dissipated(), ledger.contact(),
                          ledger.numerical(), ledger.input(), ledger.residual(energy)})
@@ -112,8 +113,9 @@ void Simulation::Implementation::fill_row() {
   VERISIM_ASSERT(out.at() == row.data() + schema.state_bytes());
   hash = hash_bytes(row.data(), schema.state_bytes(), hash);
   out.put(hash);
-  for (const std::uint64_t count : {cost.pairs_tested, cost.clusters, cost.points_tested, cost.voxels_read,
-                                    cost.contacts, cost.lookups, cost.recognitions})
+  for (const std::uint64_t count :
+       {cost.pairs_tested, cost.clusters, cost.points_tested, cost.voxels_read, cost.contacts, cost.lookups,
+        cost.recognitions, cost.exact_samples, cost.solver_steps})
     out.put(static_cast<std::uint32_t>(count));
   VERISIM_ASSERT(out.at() == row.data() + row.size());
 }

@@ -8,12 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "engine/constraint/alignment.hpp"
+#include "engine/constraint/reduction.hpp"
 #include "engine/device/device.hpp"
 #include "engine/geometry/part.hpp"
 
 namespace verisim {
 
 enum class Integrator { semi_implicit, implicit };
+/// How much of the precise geometry acts; of two bodies that differ, the one that is listed first counts.
 enum class Hybrid { off, restore, blend, exact };
 
 /// defineSimulationParameters{…} (INTERFACES sections 2 and 3: names and defaults).
@@ -24,7 +27,9 @@ struct SimulationParameters {
   std::optional<double> duration;  ///< s; none: as long as the longest trace or operator task, else 1 s
   double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
-  Hybrid hybrid = Hybrid::off;
+  Hybrid hybrid = Hybrid::restore;  ///< where both bodies have b-reps
+  AlignmentMeasure alignment = AlignmentMeasure::by_type;
+  Reduction reduction = Reduction::common_freedom;
   double max_stiffness = 300;                                            ///< N/m, virtual coupling
   double max_angular_stiffness = 0.1;                                    ///< N m/rad
   double max_coupling_force = std::numeric_limits<double>::infinity();   ///< N
@@ -45,6 +50,7 @@ struct BodyDescription {
   bool selectable = true;
   bool use_brep = true;          ///< brep=: hybrid methods may use its entities
   std::optional<Hybrid> hybrid;  ///< none: the simulation's
+  bool hybrid_enabled = true;    ///< may be switched during the run (setHybridEnabled)
   Twist twist;                   ///< start velocity
 };
 

@@ -76,6 +76,9 @@ void Simulation::set_body_pose(std::size_t index, const Pose& X_WB) {
   body.rigid.v_C = body.rigid.omega = Vector3d::Zero();
 }
 
+void Simulation::set_hybrid_enabled(std::size_t body, bool enabled) {
+  implementation_->bodies.at(body).hybrid_enabled = enabled;
+}
 void Simulation::grasp(std::size_t device, std::size_t body) {
   implementation_->take(device, body, true);
 }

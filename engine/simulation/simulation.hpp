@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/pose.hpp"
+#include "engine/constraint/constraint.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/simulation/scene.hpp"
 
@@ -28,6 +29,8 @@ struct FrameCost {
   std::uint64_t contacts = 0;
   std::uint64_t lookups = 0;  ///< pairs of feature sets looked up
   std::uint64_t recognitions = 0;
+  std::uint64_t exact_samples = 0;  ///< samples of precise edges that were tried against precise faces
+  std::uint64_t solver_steps = 0;   ///< Newton iterations of the exact response
 };
 
 /// The stages of a frame, as /timing/stage_ns counts them.
@@ -63,6 +66,8 @@ class Simulation {
   [[nodiscard]] Wrench body_force(std::size_t body) const;            ///< contact wrench of the last frame
   [[nodiscard]] std::uint64_t body_contacts(std::size_t body) const;  ///< colliding voxel pairs of the last frame
   void set_body_pose(std::size_t body, const Pose& X_WB);  ///< from scripts, between frames; velocity becomes zero
+  /// Off: the pairs of this body stay with the voxel answer. On: its method of the scene, if there is one.
+  void set_hybrid_enabled(std::size_t body, bool enabled);
   void grasp(std::size_t device, std::size_t body);
   void release(std::size_t device);
   [[nodiscard]] double mass(std::size_t body) const;
@@ -89,7 +94,11 @@ class Simulation {
   struct Totals {
     double force_max = 0;        ///< N, largest contact force on a body
     double penetration_max = 0;  ///< m
+    std::uint64_t contacts = 0;  ///< summed over all frames
     std::uint64_t cache_hits = 0, cache_misses = 0;
+    std::uint64_t null_misses = 0;  ///< of the misses: recognized, and there was no constraint
+    std::array<std::uint64_t, kConstraintKindNames.size()>
+        constraint_frames{};  ///< frames in which a link had this kind
   };
   [[nodiscard]] const Totals& totals() const;
 

@@ -90,7 +90,14 @@ void Simulation::Implementation::pull() {
 
 void Simulation::Implementation::query_contacts() {
   cost = FrameCost();
-  for (Link& link : links) link.near = false;
+  for (Link& link : links) {
+    link.near = false;
+    link.method = method_of(link);
+    link.contacts = link.cache_hits = link.cache_misses = 0;
+    link.constraint = ConstraintKind::none;
+    link.alpha = link.depth_max = 0;
+    link.on_second = {};
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].can_move) broad_phase->set_pose(i, bodies[i].rigid.pose());
   for (const auto& [i, j] : broad_phase->find()) {
@@ -98,19 +105,24 @@ void Simulation::Implementation::query_contacts() {
     if (!link.contact) continue;
     link.near = true;
     ++cost.pairs_tested;
+    if (link.method == Hybrid::exact && !link.voxels_answer) continue;
     QueryCost work;
     link.contact->query(bodies[i].rigid.pose(), bodies[j].rigid.pose(), work);
     cost.clusters += work.clusters;
     cost.points_tested += work.points;
     cost.voxels_read += work.points;
-    const std::uint32_t contacts = link.contact->contacts().size;
-    cost.contacts += contacts;
-    bodies[i].contacts += contacts;
-    bodies[j].contacts += contacts;
+    if (link.method == Hybrid::exact) link.hybrid->drop_known(link.contact->contacts());
+    count_contacts(link, link.contact->contacts().size);
   }
   for (Link& link : links)
-    if (!link.near && link.contact) link.contact->clear();
-  if (cost.contacts > 0) ++collision_frames;
+    if (link.contact && (!link.near || (link.method == Hybrid::exact && !link.voxels_answer))) link.contact->clear();
+}
+
+void Simulation::Implementation::count_contacts(Link& link, std::uint32_t contacts) {
+  link.contacts += contacts;
+  cost.contacts += contacts;
+  bodies[link.first].contacts += contacts;
+  bodies[link.second].contacts += contacts;
 }
 
 void Simulation::Implementation::respond() {
@@ -122,8 +134,7 @@ void Simulation::Implementation::respond() {
     body.loads.contact_drift.setZero();
     if (body.contacts == 0) continue;
     body.link_body = {body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), 0};
-    const bool moves = body.can_move && (parameters.all_bodies_are_dynamic || body.held_by != kNone);
-    if (moves) body.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
+    if (moves(body)) body.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
   }
   for (const Link& link : links) {
     if (!link.contact || link.contact->contacts().size == 0) continue;
@@ -144,16 +155,24 @@ void Simulation::Implementation::respond() {
     // another force. Only against what does not move may the stiffness go beyond the explicit bound.
     penalty.stabilize = !implicit || (!first.inverse_mass.isZero(0) && !second.inverse_mass.isZero(0));
     link.contact->respond(first, second, penalty, dt);
-    link.contact->sum_up(first, second, implicit);
+    using Matrices = CollisionLink::Matrices;
+    const bool restored = link.method == Hybrid::restore;
+    if (restored) restore(link);
+    link.contact->sum_up(first, second,
+                         !implicit ? Matrices::none : (restored ? Matrices::turned : Matrices::as_found));
+    link.depth_max = link.contact->depth_max();
+    LinkSide on_first = link.contact->on_first();
+    LinkSide on_second = link.contact->on_second();
+    if (link.method == Hybrid::blend) blend(link, on_first, on_second);
+    link.on_second = on_second.wrench;
     const auto add = [](Loads& loads, const LinkSide& side) {
       loads.contact += side.wrench;
       loads.contact_stiffness += side.stiffness;
       loads.contact_damping += side.damping;
       loads.contact_drift += side.drift;
     };
-    add(bodies[link.first].loads, link.contact->on_first());
-    add(bodies[link.second].loads, link.contact->on_second());
-    totals.penetration_max = std::max(totals.penetration_max, link.contact->depth_max());
+    add(bodies[link.first].loads, on_first);
+    add(bodies[link.second].loads, on_second);
   }
 }
 
@@ -176,13 +195,15 @@ Wrench Simulation::Implementation::felt(const Body& body, const StepWork& work) 
 }
 
 void Simulation::Implementation::integrate() {
+  if (solver) solve_exactly();
   for (Body& body : bodies) {
     body.contact_wrench = body.loads.contact;
-    if (!body.can_move) continue;
-    if (!parameters.all_bodies_are_dynamic && body.held_by == kNone) continue;  // what nobody holds does not move
-    const StepWork work = parameters.integrator == Integrator::implicit
-                              ? step_implicit(body.rigid, body.loads, dt)
-                              : step_semi_implicit(body.rigid, body.loads, dt);
+    body.contact_wrench += body.exact_wrench;
+    if (!moves(body)) continue;  // what nobody holds does not move
+    const StepWork work =
+        body.solved ? end_implicit(body.rigid, body.loads, body.implicit, body.velocity, body.exact_wrench, dt)
+        : parameters.integrator == Integrator::implicit ? step_implicit(body.rigid, body.loads, dt)
+                                                        : step_semi_implicit(body.rigid, body.loads, dt);
     if (!body.rigid.is_finite())
       fail(ErrorKind::diverged,
            "frame {}: the state of '{}' is not finite any more; lower the stiffness or the time step", frame,
@@ -202,6 +223,14 @@ void Simulation::Implementation::render() {
 }
 
 void Simulation::Implementation::take_stock() {
+  if (cost.contacts > 0) ++collision_frames;
+  totals.contacts += cost.contacts;
+  for (const Link& link : links) {
+    totals.penetration_max = std::max(totals.penetration_max, link.depth_max);
+    totals.cache_hits += link.cache_hits;
+    totals.cache_misses += link.cache_misses;
+    if (link.constraint != ConstraintKind::none) ++totals.constraint_frames[static_cast<std::size_t>(link.constraint)];
+  }
   for (const Body& body : bodies) totals.force_max = std::max(totals.force_max, body.contact_wrench.force.norm());
   energy = energy_now();
   fill_row();

@@ -4,37 +4,12 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
+#include "engine/geometry/merged.hpp"
+#include "engine/voxel/association.hpp"
 #include "engine/voxel/voxelize.hpp"
 
 namespace verisim {
 namespace {
-
-/// The meshes of all parts as one; b-rep faces keep their part through the parts themselves.
-TriangleMesh merged(const std::vector<Part>& parts) {
-  TriangleMesh all;
-  for (const Part& part : parts) {
-    const auto base = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
-    for (const auto& t : part.mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-  }
-  return all;
-}
-
-/// Mass properties of several solids together (parallel axis theorem).
-MassProperties combined(const std::vector<Part>& parts) {
-  MassProperties total;
-  for (const Part& part : parts) {
-    total.volume += part.mass.volume;
-    total.centroid += part.mass.volume * part.mass.centroid;
-  }
-  total.centroid /= total.volume;
-  for (const Part& part : parts) {
-    const Vector3d arm = part.mass.centroid - total.centroid;
-    total.inertia +=
-        part.mass.inertia + part.mass.volume * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
-  }
-  return total;
-}
 
 void check_closed(const BodyDescription& body) {
   if (body.parts.empty()) fail(ErrorKind::input, "'{}': has no model and no solid; give it one", body.name);
@@ -88,16 +63,18 @@ Simulation::Implementation::Implementation(Scene scene, const SimulationOptions&
       held(scene.devices.size()),
       grasp_distance(scene.grasp_distance),
       clocks(scene.parameters.timestep) {
+  for (const BodyDescription& body : scene.bodies)
+    if (body.hybrid.value_or(parameters.hybrid) == Hybrid::exact) parameters.integrator = Integrator::implicit;
   double longest = 0;
   for (const auto& device : devices) longest = std::max(longest, device->duration());
   const double duration = parameters.duration ? *parameters.duration : (longest > 0 ? longest : 1.0);
   frames_planned = static_cast<std::uint64_t>(std::llround(duration / dt));
 
+  events.reserve(1024);
   place_bodies(scene);
   voxelize_bodies(scene);
   make_links();
   make_schema();
-  events.reserve(1024);
   first_grasps = scene.grasps;
   energy = energy_now();
   ledger.start(energy);
@@ -112,13 +89,15 @@ void Simulation::Implementation::place_bodies(const Scene& scene) {
              description.name);
     Body body;
     body.name = description.name;
-    const MassProperties mass = combined(description.parts);
+    const MassProperties mass = merged(description.parts).mass;
     body.rigid = make_body(body.name, mass.volume, mass.centroid, mass.inertia, description.density);
     if (!description.X_WB.position.allFinite() || !description.X_WB.rotation.coeffs().allFinite())
       fail(ErrorKind::input, "'{}': its start pose is not finite", body.name);
     body.rigid.set_pose(description.X_WB);
     body.rigid.v_C = description.twist.linear;
     body.rigid.omega = description.twist.angular;
+    body.hybrid = description.hybrid.value_or(parameters.hybrid);
+    body.hybrid_enabled = description.hybrid_enabled;
     body.selectable = description.selectable && !description.fixed;
     const std::size_t index = bodies.size();
     const bool grasped =
@@ -160,7 +139,12 @@ void Simulation::Implementation::voxelize_bodies(const Scene& scene) {
     options.voxel_size = description.voxel_size;
     options.point_spacing = description.point_spacing;
     options.threads = threads;
-    bodies[i].voxels = std::make_shared<VoxelBody>(voxelize(description.name, merged(description.parts), options));
+    const Part part = merged(description.parts);
+    auto voxels = std::make_shared<VoxelBody>(voxelize(description.name, part.mesh, options));
+    if (bodies[i].hybrid != Hybrid::off && description.use_brep && part.has_brep())
+      associate(description.name, part, {.threads = threads}, *voxels);
+    bodies[i].voxels = std::move(voxels);
+    make_hybrid(description, bodies[i]);
   }
 }
 
@@ -182,6 +166,7 @@ void Simulation::Implementation::make_links() {
       link.second = j;
       if (bodies[i].voxels && bodies[j].voxels)
         link.contact = std::make_unique<CollisionLink>(*bodies[i].voxels, *bodies[j].voxels);
+      if (link.contact) make_hybrid(link);
       links.push_back(std::move(link));
     }
   for (std::size_t i = 0; i < bodies.size(); ++i) broad_phase->set_pose(i, bodies[i].rigid.pose());

@@ -5,13 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "engine/constraint/blend.hpp"
 #include "engine/contact/broad_phase.hpp"
 #include "engine/contact/collision_link.hpp"
 #include "engine/dynamics/body.hpp"
 #include "engine/dynamics/coupling.hpp"
 #include "engine/dynamics/integrator.hpp"
 #include "engine/dynamics/ledger.hpp"
+#include "engine/exact/convex_step.hpp"
+#include "engine/exact/exact_link.hpp"
 #include "engine/simulation/clocks.hpp"
+#include "engine/simulation/hybrid_link.hpp"
 #include "engine/simulation/simulation.hpp"
 #include "engine/voxel/voxmap.hpp"
 
@@ -24,9 +28,13 @@ struct Body {
   RigidBody rigid;
   bool can_move = false;  ///< not fixed, and dynamic or something that a device may hold
   bool selectable = false;
-  Bounds bounds_B;                          ///< of its meshes, body coordinates
-  std::shared_ptr<const VoxelBody> voxels;  ///< null: nothing that moves can come near it
-  std::size_t held_by = kNone;              ///< device
+  Bounds bounds_B;                                ///< of its meshes, body coordinates
+  std::shared_ptr<const VoxelBody> voxels;        ///< null: nothing that moves can come near it
+  Hybrid hybrid = Hybrid::off;                    ///< its method
+  bool hybrid_enabled = true;                     ///< false: as if it were off
+  std::unique_ptr<EntitySets> entities;           ///< null: no b-rep that the method could use
+  std::shared_ptr<const exact::ExactBody> exact;  ///< null: not the method, or nothing precisely known
+  std::size_t held_by = kNone;                    ///< device
   Coupling coupling;
 
   // of the frame that is being computed
@@ -34,14 +42,31 @@ struct Body {
   Loads loads;
   std::uint64_t contacts = 0;
   unsigned links_touching = 0;  ///< of the last frame: shares the stability budget
-  Wrench contact_wrench;        ///< as applied
+  bool solved = false;          ///< by the exact response: moves with `velocity`
+  std::size_t island = kNone;   ///< of bodies that the exact response solves together: its first body
+  int in_solver = exact::kFixed;
+  ImplicitStep implicit;
+  Vector6d velocity;
+  Wrench exact_wrench;
+  Wrench contact_wrench;  ///< as applied
 };
 
 struct Link {
   std::size_t first, second;               ///< bodies, first < second
   std::unique_ptr<CollisionLink> contact;  ///< null: one of them has no voxels
-  bool near = false;                       ///< queried in this frame
-  std::uint32_t cache_hits = 0, cache_misses = 0;
+  std::unique_ptr<HybridLink> hybrid;      ///< null: no method, or one of them has no b-rep
+  std::unique_ptr<exact::ExactLink> exact;
+  MemoCounts counted;         ///< of `hybrid`, up to the last frame
+  bool voxels_answer = true;  ///< false: every face of both is precisely known, the exact method needs no voxel
+
+  // of the frame that is being computed
+  bool near = false;
+  Hybrid method = Hybrid::off;
+  std::uint32_t contacts = 0, cache_hits = 0, cache_misses = 0;
+  ConstraintKind constraint = ConstraintKind::none;
+  double alpha = 0;
+  double depth_max = 0;
+  Wrench on_second;
 };
 
 struct Held {
@@ -62,7 +87,8 @@ struct Simulation::Implementation {
   std::vector<std::size_t> link_of_pair;  ///< (first * bodies + second) -> link or kNone
   std::unique_ptr<BroadPhase> broad_phase;
   std::vector<std::shared_ptr<Device>> devices;
-  std::vector<Held> held;  ///< per device
+  std::vector<Held> held;                     ///< per device
+  std::unique_ptr<exact::ConvexStep> solver;  ///< null: no body's method is exact
   double grasp_distance = 0.1;
   std::vector<Grasp> first_grasps;  ///< of the scene: taken in the first frame, when the handles have been sampled
   Ledger ledger;
@@ -83,14 +109,30 @@ struct Simulation::Implementation {
   void place_bodies(const Scene& scene);
   void voxelize_bodies(const Scene& scene);
   void make_links();
+  void make_hybrid(const BodyDescription& description, Body& body);
+  void make_hybrid(Link& link);
   [[nodiscard]] double reach_of(std::size_t body) const;
 
   // step.cpp: the stages of one frame, in their order
   void sample_devices(double t);
   void pull();
   void query_contacts();
+  void count_contacts(Link& link, std::uint32_t contacts);
   void respond();
   void integrate();
+
+  // hybrid.cpp
+  [[nodiscard]] Hybrid method_of(const Link& link) const;
+  [[nodiscard]] bool moves(const Body& body) const;
+  [[nodiscard]] Pose relative_pose(const Link& link) const;
+  void restore(Link& link);
+  void blend(Link& link, LinkSide& on_first, LinkSide& on_second);
+  void note(Link& link, const RestoreResult& result);
+  void solve_exactly();
+  void find_exact_contacts(Link& link);
+  void join_islands();
+  void solve_island(std::size_t island);
+  void share_out(Link& link, std::size_t first_row);
   [[nodiscard]] Wrench felt(const Body& body, const StepWork& work) const;
   void render();
   void take_stock();

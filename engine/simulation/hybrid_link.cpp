@@ -1,0 +1,97 @@
+#include "engine/simulation/hybrid_link.hpp"
+
+#include <algorithm>
+
+#include "engine/voxel/association.hpp"
+
+namespace verisim {
+
+std::vector<bool> precisely_known(const BodyFeatures& features) {
+  std::vector<bool> known;
+  for (std::size_t id = 0; id < features.sets.size(); ++id) {
+    bool any = false;
+    bool all = true;
+    for (const EntityNumber entity : features.sets[static_cast<FeatureSetId>(id)]) {
+      if (!features.is_face(entity)) continue;
+      any = true;
+      all = all && !std::holds_alternative<OtherSurface>(features.face(entity).surface);
+    }
+    known.push_back(any && all);
+  }
+  return known;
+}
+
+HybridLink::HybridLink(const Side& map, const Side& points, const ConstraintOptions& options)
+    : map_(map),
+      points_(points),
+      constraints_(*map.entities, *points.entities, options),
+      map_known_(precisely_known(map.voxels->features)),
+      points_known_(precisely_known(points.voxels->features)) {
+  const std::size_t capacity = points.voxels->shell.size();
+  set_a_.resize(capacity);
+  set_b_.resize(capacity);
+  for (auto* column : {&fx_, &fy_, &fz_}) column->resize(capacity);
+}
+
+ContactColumns HybridLink::columns_of(const ContactList& contacts) {
+  for (std::uint32_t i = 0; i < contacts.size; ++i) {
+    set_a_[i] = feature_at(*map_.voxels, contacts.slot[i]);
+    set_b_[i] = feature_of_point(points_.voxels->shell, contacts.point[i]);
+  }
+  ContactColumns columns;
+  columns.size = contacts.size;
+  columns.x = contacts.x.data();
+  columns.y = contacts.y.data();
+  columns.z = contacts.z.data();
+  columns.set_a = set_a_.data();
+  columns.set_b = set_b_.data();
+  columns.origin = map_.voxels->voxmap.origin;
+  return columns;
+}
+
+RestoreResult HybridLink::restore(ContactList& contacts, const Pose& X_AB, bool turn_normals) {
+  constraints_.begin_frame(X_AB);
+  ContactColumns columns = columns_of(contacts);
+  columns.fx = contacts.fx.data();
+  columns.fy = contacts.fy.data();
+  columns.fz = contacts.fz.data();
+  if (turn_normals) {
+    std::copy_n(contacts.fx.begin(), contacts.size, fx_.begin());
+    std::copy_n(contacts.fy.begin(), contacts.size, fy_.begin());
+    std::copy_n(contacts.fz.begin(), contacts.size, fz_.begin());
+  }
+  const RestoreResult result = constraints_.restore_contacts(columns);
+  if (!turn_normals) return result;
+  for (std::uint32_t i = 0; i < contacts.size; ++i) {
+    const Vector3f before(fx_[i], fy_[i], fz_[i]);
+    const float size = before.norm();
+    if (!(size > 0)) continue;
+    contacts.nx[i] = contacts.fx[i] / size;
+    contacts.ny[i] = contacts.fy[i] / size;
+    contacts.nz[i] = contacts.fz[i] / size;
+  }
+  return result;
+}
+
+RestoreResult HybridLink::look_up(const ContactList& contacts, const Pose& X_AB) {
+  constraints_.begin_frame(X_AB);
+  return constraints_.look_up_contacts(columns_of(contacts));
+}
+
+void HybridLink::drop_known(ContactList& contacts) const {
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < contacts.size; ++i) {
+    const bool known = map_known_[feature_at(*map_.voxels, contacts.slot[i])] &&
+                       points_known_[feature_of_point(points_.voxels->shell, contacts.point[i])];
+    if (known) continue;
+    contacts.point[kept] = contacts.point[i];
+    contacts.slot[kept] = contacts.slot[i];
+    for (auto* column :
+         {&contacts.x, &contacts.y, &contacts.z, &contacts.nx, &contacts.ny, &contacts.nz, &contacts.depth})
+      (*column)[kept] = (*column)[i];
+    ++kept;
+  }
+  contacts.size = kept;
+}
+
+}  // namespace verisim
