@@ -36,26 +36,33 @@ class FaceTriangles {
   std::vector<std::uint32_t> triangles_, first_;
 };
 
-/// Into which direction a face lies from a point of its border: towards the third corner of the triangle whose side is
-/// nearest to the point.
-Vector3d towards_face(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const Vector3d& p) {
+/// Squared distance of a point to a segment.
+double squared_distance(const Vector3d& a, const Vector3d& b, const Vector3d& p) {
+  const Vector3d ab = b - a;
+  const double length = ab.squaredNorm();
+  const double s = length > 0 ? std::clamp(ab.dot(p - a) / length, 0.0, 1.0) : 0;
+  return (a + s * ab - p).squaredNorm();
+}
+
+/// Does a face lie in the direction `across` from a point of its border, or opposite to it? The triangles whose sides
+/// are nearest to the point say it by their third corners: one, or where the point is a corner all that meet there.
+bool lies_towards(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const Vector3d& p,
+                  const Vector3d& across) {
+  constexpr double kSame = 1e-16;  // m^2: corners are rounded to 1.5e-11 m
   double nearest = std::numeric_limits<double>::infinity();
-  Vector3d towards = Vector3d::Zero();
+  double most = 0;
   for (const std::uint32_t t : triangles) {
     const auto& v = mesh.triangles[t];
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3d& a = mesh.vertices[v[i]];
-      const Vector3d ab = mesh.vertices[v[(i + 1) % 3]] - a;
-      const double length = ab.squaredNorm();
-      if (length == 0) continue;
-      const double s = std::clamp(ab.dot(p - a) / length, 0.0, 1.0);
-      const double distance = (a + s * ab - p).squaredNorm();
-      if (distance >= nearest) continue;
-      nearest = distance;
-      towards = mesh.vertices[v[(i + 2) % 3]] - p;
+      const double distance = squared_distance(mesh.vertices[v[i]], mesh.vertices[v[(i + 1) % 3]], p);
+      if (distance > nearest + kSame) continue;
+      if (distance < nearest - kSame) most = 0;
+      nearest = std::min(nearest, distance);
+      const double towards = across.dot(mesh.vertices[v[(i + 2) % 3]] - p);
+      if (std::abs(towards) > std::abs(most)) most = towards;
     }
   }
-  return towards;
+  return most > 0;
 }
 
 void set_extent(ExactEdge& made, const Edge& edge) {
@@ -129,8 +136,8 @@ class PartTaker {
     };
     for (std::size_t side = 0; side < 2; ++side) {
       if (surface[side] == nullptr) continue;
-      const Vector3d inward = towards_face(part_.mesh, triangles_.of(edge.faces[side]), points_[e][middle]);
-      if (inward.dot(out_of(middle, side)) > 0) sign[side] = -1;
+      const std::span<const std::uint32_t> triangles = triangles_.of(edge.faces[side]);
+      if (lies_towards(part_.mesh, triangles, points_[e][middle], out_of(middle, side))) sign[side] = -1;
     }
     set_extent(made, edge);
     if (surface[0] != nullptr && surface[1] != nullptr) {
@@ -187,8 +194,8 @@ ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : o
   for (const ExactFace& face : faces) boxes.push_back(face.surface ? face.bounds : Bounds());
   face_tree = BoxTree(boxes);
   boxes.clear();
-  for (const Group& group : groups) boxes.push_back(bounds_of(*this, group));
-  group_tree = BoxTree(boxes);
+  for (const Run& run : runs) boxes.push_back(bounds_of(*this, run));
+  run_tree = BoxTree(boxes);
 }
 
 }  // namespace verisim::exact

@@ -76,19 +76,12 @@ struct Feature {
   bool against_round_only = false;   ///< axes of pins: their ends decide against everything else
 };
 
-/// The middle of one segment.
-struct Sample {
-  double c = 1, s = 0;  ///< arc: cosine and sine of t; line: t and 0
-  /// Directions from here into the body along its boundary, [begin, end) of ExactBody::wedges. The normal of a contact
-  /// has no negative part along any of them, for else the body would reach through the other's surface right beside it.
-  std::uint32_t wedge_begin = 0, wedge_end = 0;
-};
-
-/// Up to kGroup neighbouring samples of one feature.
-struct Group {
+/// Neighbouring segments of one feature, as the search takes them: at most kRun samples, in groups of kGroup.
+struct Run {
   std::uint32_t feature, begin, end;  ///< samples [begin, end)
 };
 inline constexpr std::uint32_t kGroup = 4;
+inline constexpr std::uint32_t kRun = 32;
 
 struct ExactBody {
   /// Parts that move as one, in body coordinates. Any part may be without b-rep: it then adds nothing. A face or edge
@@ -102,11 +95,16 @@ struct ExactBody {
   std::vector<ExactFace> faces;  ///< of all parts, one part after the other
   std::vector<ExactEdge> edges;
   std::vector<Feature> features;
-  std::vector<Sample> samples;
+  // Samples, the middles of the segments; n of them.
+  std::vector<double> sample_c, sample_s;  ///< (n) arc: cosine and sine of t; line: t and 0; point: 0
+  /// (n + 1) Where each sample's wedge begins in `wedges`: directions from there into the body along its boundary. The
+  /// normal of a contact has no negative part along any of them, for else the body would reach through the other's
+  /// surface right beside it.
+  std::vector<std::uint32_t> wedge_begin = {0};
   std::vector<Vector3d> wedges;
-  std::vector<Group> groups;
-  BoxTree face_tree;   ///< over the faces with a surface
-  BoxTree group_tree;  ///< over the groups, their balls included
+  std::vector<Run> runs;
+  BoxTree face_tree;  ///< over the faces with a surface
+  BoxTree run_tree;   ///< over the runs, their balls included
   std::size_t known_faces = 0;
 };
 

@@ -19,7 +19,8 @@ SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt,
   const Quaterniond to_base = base.X_WB.rotation.conjugate();
   f.v = to_base * (velocity_at(mover, base.X_WB.position) - velocity_at(base, base.X_WB.position));
   f.omega = to_base * (mover.twist.angular - base.twist.angular);
-  f.X_WB = base.X_WB;
+  f.R_WB = base.X_WB.rotation.toRotationMatrix();
+  f.p_WB = base.X_WB.position;
   f.dt = dt;
   f.margin = margin;
   f.mover_is_second = mover_is_second;

@@ -30,8 +30,8 @@ struct BodyMotion {
 
 /// Work of one search; deterministic.
 struct SearchCost {
-  std::uint64_t groups = 0;   ///< pairs of group and face that were near
-  std::uint64_t samples = 0;  ///< samples that slid
+  std::uint64_t samples = 0;  ///< compared with a face
+  std::uint64_t slides = 0;   ///< that slid to where they are nearest
   std::uint64_t rows = 0;
 };
 

@@ -10,6 +10,12 @@ namespace {
 
 constexpr double kSegmentMax = pinned::kPi / 8;  // rad: the search's series for sine and cosine are made for half of it
 
+/// A sample before it is stored.
+struct Sample {
+  double c = 0, s = 0;
+  std::vector<Vector3d> wedge;
+};
+
 /// A curve as a feature has it, and how it is cut.
 struct Cut {
   Feature::Kind kind;
@@ -73,15 +79,18 @@ Feature feature_of(const Cut& cut, const BodyOptions& options) {
   return f;
 }
 
-/// Adds the feature and its samples, in groups.
+/// Adds the feature and its samples.
 void add(ExactBody& body, const Feature& feature, std::span<const Sample> samples) {
   const auto number = static_cast<std::uint32_t>(body.features.size());
   body.features.push_back(feature);
-  for (std::size_t i = 0; i < samples.size(); i += kGroup) {
-    const auto begin = static_cast<std::uint32_t>(body.samples.size());
-    const std::span<const Sample> some = samples.subspan(i, std::min<std::size_t>(kGroup, samples.size() - i));
-    body.samples.insert(body.samples.end(), some.begin(), some.end());
-    body.groups.push_back({number, begin, static_cast<std::uint32_t>(body.samples.size())});
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto at = static_cast<std::uint32_t>(body.sample_c.size());
+    if (i % kRun == 0) body.runs.push_back({number, at, at});
+    ++body.runs.back().end;
+    body.sample_c.push_back(samples[i].c);
+    body.sample_s.push_back(samples[i].s);
+    body.wedges.insert(body.wedges.end(), samples[i].wedge.begin(), samples[i].wedge.end());
+    body.wedge_begin.push_back(static_cast<std::uint32_t>(body.wedges.size()));
   }
 }
 
@@ -125,12 +134,10 @@ void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made,
                        const std::array<double, 2>& side_sign) {
   if (made.fold == Fold::concave) return;
   const auto add_wedge = [&](Sample& sample, const Vector3d& p, const Vector3d& tangent) {
-    sample.wedge_begin = static_cast<std::uint32_t>(body.wedges.size());
     for (std::size_t side = 0; side < 2; ++side) {
       const auto& surface = body.faces[made.faces[side]].surface;
-      if (surface) body.wedges.emplace_back(-side_sign[side] * tangent.cross(surface->at(p).normal).normalized());
+      if (surface) sample.wedge.emplace_back(-side_sign[side] * tangent.cross(surface->at(p).normal).normalized());
     }
-    sample.wedge_end = static_cast<std::uint32_t>(body.wedges.size());
   };
   const Cut cut = cut_of(edge.curve, edge.t_range, body.options.spacing);
   std::vector<Sample> samples;
@@ -178,13 +185,11 @@ void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) 
     constexpr double kNear = 1e-9;  // m: what rounding of the bounds may leave
     if (face.v_range[0] < to_apex + kNear) {
       Sample sample;
-      sample.wedge_begin = static_cast<std::uint32_t>(body.wedges.size());
       const double out = pinned::sin(cone->half_angle);
       const double along = pinned::cos(cone->half_angle);
       const Vector3d y = cone->direction.cross(cone->x_axis);
       for (const Vector3d& across : {cone->x_axis, Vector3d(-cone->x_axis), y, Vector3d(-y)})
-        body.wedges.emplace_back(along * cone->direction + out * across);
-      sample.wedge_end = static_cast<std::uint32_t>(body.wedges.size());
+        sample.wedge.emplace_back(along * cone->direction + out * across);
       add_point(body, cone->point + to_apex * cone->direction, 0, kNoFace, sample);
     }
   }
@@ -198,29 +203,23 @@ void add_corner_features(ExactBody& body, std::vector<EdgeEnd> ends) {
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (used[i]) continue;
     Sample sample;
-    sample.wedge_begin = static_cast<std::uint32_t>(body.wedges.size());
     bool convex = true;
     for (std::size_t j = i; j < ends.size() && ends[j].point.x() <= ends[i].point.x() + kSame; ++j) {
       if (used[j] || (ends[j].point - ends[i].point).norm() > kSame) continue;
       used[j] = true;
       convex = convex && ends[j].fold == Fold::convex;
-      body.wedges.push_back(ends[j].into);
+      sample.wedge.push_back(ends[j].into);
     }
-    sample.wedge_end = static_cast<std::uint32_t>(body.wedges.size());
-    if (convex && sample.wedge_end - sample.wedge_begin >= 3) {
-      add_point(body, ends[i].point, 0, kNoFace, sample);
-    } else {
-      body.wedges.resize(sample.wedge_begin);
-    }
+    if (convex && sample.wedge.size() >= 3) add_point(body, ends[i].point, 0, kNoFace, sample);
   }
 }
 
-Bounds bounds_of(const ExactBody& body, const Group& group) {
-  const Feature& f = body.features[group.feature];
+Bounds bounds_of(const ExactBody& body, const Run& run) {
+  const Feature& f = body.features[run.feature];
   Bounds bounds;
   const Vector3d margin = Vector3d::Constant(f.radius + f.reach);
-  for (std::uint32_t i = group.begin; i < group.end; ++i) {
-    const Vector3d p = place_of(f, body.samples[i].c, body.samples[i].s);
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    const Vector3d p = f.origin + body.sample_c[i] * f.x + body.sample_s[i] * f.y;
     bounds.include(p - margin);
     bounds.include(p + margin);
   }

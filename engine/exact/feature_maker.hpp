@@ -28,12 +28,7 @@ struct EdgeEnd {
 /// Points where three or more edges end, all of them convex.
 void add_corner_features(ExactBody& body, std::vector<EdgeEnd> ends);
 
-/// The box around a group's balls.
-[[nodiscard]] Bounds bounds_of(const ExactBody& body, const Group& group);
-
-/// Where along a feature a sample is.
-[[nodiscard]] inline Vector3d place_of(const Feature& f, double c, double s) {
-  return f.origin + c * f.x + s * f.y;
-}
+/// The box around a run's balls.
+[[nodiscard]] Bounds bounds_of(const ExactBody& body, const Run& run);
 
 }  // namespace verisim::exact

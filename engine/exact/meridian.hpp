@@ -1,0 +1,102 @@
+// A curve seen from a surface: its distance from it, with the first two derivatives along the curve, in the surface's
+// own axes, where a handful of multiplications are enough. The search's innermost loop. Private to this folder.
+#pragma once
+
+#include <cmath>
+
+#include "engine/exact/exact_body.hpp"
+
+namespace verisim::exact {
+
+/// p(t) = origin + c x + s y in coordinates (x axis, y axis, axis) of the surface, and the surface's numbers.
+struct CurveFromSurface {
+  Vector3d origin, x, y;
+  bool is_arc;
+  PreciseSurface::Kind kind;
+  double side, radius, ring, cosine, sine, tangent;
+};
+
+struct Measure {
+  double distance;  ///< m
+  double slope;     ///< by t
+  double bend;      ///< second derivative by t
+};
+
+/// At one place, c and s as in ExactBody::sample_c. `kKind`: sphere and torus are one kind.
+template <PreciseSurface::Kind kKind, bool kIsArc>
+inline Measure measure(const CurveFromSurface& f, double c, double s) {
+  // X, Y, Z: the place; T: first, B: second derivative.
+  const double X = f.origin.x() + c * f.x.x() + s * f.y.x();
+  const double Y = f.origin.y() + c * f.x.y() + s * f.y.y();
+  const double Z = f.origin.z() + c * f.x.z() + s * f.y.z();
+  const double TX = kIsArc ? c * f.y.x() - s * f.x.x() : f.x.x();
+  const double TY = kIsArc ? c * f.y.y() - s * f.x.y() : f.x.y();
+  const double TZ = kIsArc ? c * f.y.z() - s * f.x.z() : f.x.z();
+  const double BX = kIsArc ? f.origin.x() - X : 0;
+  const double BY = kIsArc ? f.origin.y() - Y : 0;
+  const double BZ = kIsArc ? f.origin.z() - Z : 0;
+  if constexpr (kKind == PreciseSurface::Kind::plane) return {Z, TZ, BZ};
+  const double rho = std::sqrt(X * X + Y * Y);
+  const double per_rho = 1 / (rho + 1e-300);  // on the axis: no slope
+  const double rho1 = (X * TX + Y * TY) * per_rho;
+  const double rho2 = (TX * TX + TY * TY - rho1 * rho1 + X * BX + Y * BY) * per_rho;
+  if constexpr (kKind == PreciseSurface::Kind::cylinder)
+    return {f.side * (rho - f.radius), f.side * rho1, f.side * rho2};
+  if constexpr (kKind == PreciseSurface::Kind::cone) {
+    return {f.side * f.cosine * (rho - f.radius - Z * f.tangent), f.side * (f.cosine * rho1 - f.sine * TZ),
+            f.side * (f.cosine * rho2 - f.sine * BZ)};
+  }
+  const double q = rho - f.ring;
+  const double tube = std::sqrt(q * q + Z * Z);
+  const double per_tube = 1 / (tube + 1e-300);
+  const double tube1 = (q * rho1 + Z * TZ) * per_tube;
+  const double tube2 = (rho1 * rho1 + q * rho2 + TZ * TZ + Z * BZ - tube1 * tube1) * per_tube;
+  return {f.side * (tube - f.radius), f.side * tube1, f.side * tube2};
+}
+
+[[nodiscard]] inline CurveFromSurface seen_from(const PreciseSurface& s, const Vector3d& origin, const Vector3d& x,
+                                                const Vector3d& y, bool is_arc) {
+  return {s.to_own_axes(origin - s.point()),
+          s.to_own_axes(x),
+          s.to_own_axes(y),
+          is_arc,
+          s.kind(),
+          s.side(),
+          s.radius(),
+          s.ring_radius(),
+          s.cosine(),
+          s.sine(),
+          s.tangent()};
+}
+
+/// Calls f with the measure of the curve's kinds as a function of (c, s).
+template <typename F>
+inline void with_measure(const CurveFromSurface& curve, F&& f) {
+  using Kind = PreciseSurface::Kind;
+  const auto of_kind = [&]<Kind kKind>() {
+    if (curve.is_arc) {
+      f([&](double c, double s) { return measure<kKind, true>(curve, c, s); });
+    } else {
+      f([&](double c, double s) { return measure<kKind, false>(curve, c, s); });
+    }
+  };
+  switch (curve.kind) {
+    case Kind::plane:
+      return of_kind.template operator()<Kind::plane>();
+    case Kind::cylinder:
+      return of_kind.template operator()<Kind::cylinder>();
+    case Kind::cone:
+      return of_kind.template operator()<Kind::cone>();
+    default:
+      return of_kind.template operator()<Kind::torus>();
+  }
+}
+
+/// How near a segment comes to a surface if the distance is a parabola over it.
+inline double nearest_of(const Measure& m, double half_width) {
+  const double way = std::abs(m.slope);
+  const double to_end = m.bend * half_width > way ? way / m.bend : half_width;
+  return m.distance - to_end * (way - 0.5 * m.bend * to_end);
+}
+
+}  // namespace verisim::exact
