@@ -71,13 +71,14 @@ void set_extent(ExactEdge& made, const Edge& edge) {
   if (const auto* line = std::get_if<Line>(&edge.curve)) {
     made.extent = ExactEdge::Extent::line;
     made.middle = line->point + center * line->direction;
-    made.axis = line->direction;
+    made.along = line->direction;
     made.half = width;
   } else if (const auto* circle = std::get_if<Circle>(&edge.curve); circle != nullptr && width < 0.999 * pinned::kPi) {
     made.extent = ExactEdge::Extent::arc;
     made.middle = circle->center;
-    made.normal = circle->normal;
-    made.axis = pinned::cos(center) * circle->x_axis + pinned::sin(center) * circle->normal.cross(circle->x_axis);
+    const Vector3d y = circle->normal.cross(circle->x_axis);
+    made.along = pinned::cos(center) * circle->x_axis + pinned::sin(center) * y;
+    made.on = pinned::cos(center) * y - pinned::sin(center) * circle->x_axis;
     made.half = pinned::cos(width);
   }
 }
@@ -95,7 +96,7 @@ class PartTaker {
     for (std::size_t f = 0; f < part.faces.size(); ++f) take_surface(f);
     for (std::size_t e = 0; e < part.edges.size(); ++e) take_edge(e);
     for (std::size_t f = 0; f < part.faces.size(); ++f) take_trim(f);
-    add_corner_features(body, ends_);
+    take_corners(body, ends_);
   }
 
  private:
@@ -155,8 +156,8 @@ class PartTaker {
     for (const std::uint32_t f : edge.faces) borders_[f].push_back({number, points_[e]});
     if (surface[0] != nullptr || surface[1] != nullptr) add_edge_features(body_, edge, made, points_[e], sign);
     const std::vector<Vector3d>& p = points_[e];
-    ends_.push_back({p.front(), tangent(0), made.fold});
-    ends_.push_back({p.back(), -tangent(p.size() - 1), made.fold});
+    ends_.push_back({p.front(), tangent(0), number, 0});
+    ends_.push_back({p.back(), -tangent(p.size() - 1), number, 1});
     body_.edges.push_back(std::move(made));
   }
 
@@ -181,10 +182,13 @@ class PartTaker {
 }  // namespace
 
 bool ExactEdge::speaks_for(const Vector3d& p) const {
+  if (extent == Extent::all) return true;
   const Vector3d d = p - middle;
-  if (extent == Extent::line) return std::abs(axis.dot(d)) <= half;
-  if (extent == Extent::arc) return axis.dot(d) >= half * (d - normal.dot(d) * normal).norm();
-  return true;
+  const double a = along.dot(d);
+  const double b = on.dot(d);
+  const bool is_line = extent == Extent::line;
+  const bool is_beyond = is_line ? std::abs(a) > half : a < half * std::sqrt(a * a + b * b);
+  return !is_beyond || speaks_beyond[(is_line ? a : b) > 0 ? 1 : 0];
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {

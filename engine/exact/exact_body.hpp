@@ -39,13 +39,15 @@ enum class Fold : std::uint8_t { convex, concave, smooth };
 struct ExactEdge {
   std::array<std::uint32_t, 2> faces{};  ///< numbers in ExactBody::faces
   Fold fold = Fold::smooth;
-  /// Along the edge's direction a point may be beyond the edge's end, and then the edge says nothing about it. Lines:
-  /// |axis . (p - middle)| <= half. Arcs of circles: axis . (p - middle) >= half |p - middle|, middle the circle's
-  /// centre and p taken in its plane. Others and full circles always speak.
+  /// A point may lie beyond the edge's end, and then the edge says nothing about it, unless the end is a corner where
+  /// all edges are convex: there the material is inside of all of them. Lines: `along` . (p - middle) beyond +-half.
+  /// Arcs of circles: middle the circle's centre, `along` and `on` towards the arc's middle and a quarter turn on,
+  /// half the cosine of half the arc. Others and full circles always speak.
   enum class Extent : std::uint8_t { line, arc, all };
   Extent extent = Extent::all;
-  Vector3d middle = Vector3d::Zero(), axis = Vector3d::Zero(), normal = Vector3d::Zero();
+  Vector3d middle = Vector3d::Zero(), along = Vector3d::Zero(), on = Vector3d::Zero();
   double half = 0;
+  std::array<bool, 2> speaks_beyond = {false, false};  ///< its beginning, its end
   [[nodiscard]] bool speaks_for(const Vector3d& p) const;
 
   /// Smooth edges only: points along the edge with, per point, the directions out of either face across the edge.

@@ -195,22 +195,28 @@ void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) 
   }
 }
 
-void add_corner_features(ExactBody& body, std::vector<EdgeEnd> ends) {
+void take_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
   constexpr double kSame = 1e-7;  // m: ends nearer than this are one corner
-  std::vector<bool> used(ends.size(), false);
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EdgeEnd& a, const EdgeEnd& b) { return a.point.x() < b.point.x(); });
+  std::vector<bool> used(ends.size(), false);
+  std::vector<const EdgeEnd*> here;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (used[i]) continue;
-    Sample sample;
-    bool convex = true;
+    here.clear();
     for (std::size_t j = i; j < ends.size() && ends[j].point.x() <= ends[i].point.x() + kSame; ++j) {
       if (used[j] || (ends[j].point - ends[i].point).norm() > kSame) continue;
       used[j] = true;
-      convex = convex && ends[j].fold == Fold::convex;
-      sample.wedge.push_back(ends[j].into);
+      here.push_back(&ends[j]);
     }
-    if (convex && sample.wedge.size() >= 3) add_point(body, ends[i].point, 0, kNoFace, sample);
+    const auto is_convex = [&](const EdgeEnd* end) { return body.edges[end->edge].fold == Fold::convex; };
+    if (here.size() < 3 || !std::all_of(here.begin(), here.end(), is_convex)) continue;
+    Sample sample;
+    for (const EdgeEnd* end : here) {
+      body.edges[end->edge].speaks_beyond[end->which] = true;
+      sample.wedge.push_back(end->into);
+    }
+    add_point(body, ends[i].point, 0, kNoFace, sample);
   }
 }
 

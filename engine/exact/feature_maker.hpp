@@ -19,14 +19,15 @@ void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made,
 /// A ball's middle, a torus' ring, a pin's axis, a cone's apex.
 void add_face_features(ExactBody& body, const Face& face, std::uint32_t number);
 
-/// One edge's end, for add_corner_features.
+/// One edge's end, for take_corners.
 struct EdgeEnd {
   Vector3d point;
-  Vector3d into;  ///< unit, along the edge
-  Fold fold;
+  Vector3d into;       ///< unit, along the edge
+  std::uint32_t edge;  ///< number in ExactBody::edges
+  std::size_t which;   ///< 0: its beginning, 1: its end
 };
-/// Points where three or more edges end, all of them convex.
-void add_corner_features(ExactBody& body, std::vector<EdgeEnd> ends);
+/// Points where three or more edges end, all of them convex: features, and the edges speak for what is beyond.
+void take_corners(ExactBody& body, std::vector<EdgeEnd> ends);
 
 /// The box around a run's balls.
 [[nodiscard]] Bounds bounds_of(const ExactBody& body, const Run& run);

@@ -80,6 +80,7 @@ class Search {
   [[nodiscard]] bool admit(const PlacedFeature& placed, std::uint32_t face, Candidate& c) const;
   [[nodiscard]] bool cross_edge(const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
                                 Candidate& c) const;
+  [[nodiscard]] bool is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t other) const;
   [[nodiscard]] bool decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) const;
   [[nodiscard]] double lean_weight(std::uint32_t sample, const Vector3d& normal) const;
   void add(const Candidate& c, const Feature& feature, double weight, std::uint32_t count, std::uint32_t face);
@@ -254,7 +255,20 @@ bool Search::cross_edge(const PlacedFeature& placed, std::uint32_t face, std::ui
   c.normal = mixed / length;
   c.gap = c.at.distance / length;
   c.edge_share = 4 * share * (1 - share);
-  return c.gap > -base_.options.spacing;
+  return c.gap > -base_.options.spacing && is_outermost(c, face, other) && is_outermost(c, other, face);
+}
+
+/// Is the candidate's place, on the edge between two faces, within `face` and not beyond a third face next to it?
+bool Search::is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t other) const {
+  const PreciseSurface& surface = *base_.faces[face].surface;
+  const Trim::Answer answer = base_.faces[face].trim->find(surface, c.p - c.at.distance * surface.at(c.p).normal);
+  for (const std::uint32_t e : answer.edges) {
+    const ExactEdge& edge = base_.edges[e];
+    const std::uint32_t third = across(edge, face);
+    if (edge.fold != Fold::convex || third == other || !edge.speaks_for(c.p)) continue;
+    if (base_.faces[third].surface->at(c.p).distance > c.at.distance) return false;
+  }
+  return answer.where != Trim::Where::outside;
 }
 
 double Search::lean_weight(std::uint32_t sample, const Vector3d& normal) const {

@@ -11,8 +11,8 @@ struct SearchFrame {
   Matrix3d R;         ///< mover's coordinates to the base's
   Vector3d p;         ///< m, mover's origin
   Vector3d v, omega;  ///< velocity of the mover's material against the base: v + omega x point
-  Matrix3d R_WB;        ///< base to world
-  Vector3d p_WB;        ///< m
+  Matrix3d R_WB;      ///< base to world
+  Vector3d p_WB;      ///< m
   double dt, margin;
   bool mover_is_second;
 };

@@ -1,0 +1,106 @@
+#include "engine/exact/exact_link.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/exact/scenes.hpp"
+
+namespace verisim::exact::test {
+namespace {
+
+using Kind = Solid::Kind;
+
+constexpr double kMargin = 0.001;
+constexpr double kRounding =
+    2e-10;  // m: entities are rounded to 1.5e-11 m, and a slide stops when 1e-10 m are left to win
+
+const Vector3d kBox(0.04, 0.03, 0.02);
+
+Solid box(const Vector3d& size) {
+  return make(Kind::box, {size.x(), size.y(), size.z()});
+}
+
+/// Distance of a point outside to a box around the origin.
+double distance_to_box(const Vector3d& p, const Vector3d& half) {
+  return (p.cwiseAbs() - half).cwiseMax(0).norm();
+}
+
+// The closed form holds at faces, edges and corners alike: a ball's middle is as far from the box as it is.
+TEST(BallAndBox, AreAsFarApartAsTheClosedFormSays) {
+  constexpr double kRadius = 0.007;
+  Pair pair(box(kBox), make(Kind::sphere, {kRadius}));
+  int near = 0;
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    Draw draw(seed);
+    const Vector3d p = draw.in_box(0.5 * kBox + Vector3d::Constant(kRadius + kMargin));
+    const double gap = distance_to_box(p, 0.5 * kBox) - kRadius;
+    if (gap < -0.0019) continue;  // deeper than a sample's spacing is not looked for
+    const double found = pair.gap_at({p, draw.rotation()}, kMargin);
+    ASSERT_NEAR(found, std::min(gap, kMargin), kRounding) << "seed " << seed << " at " << p.transpose();
+    near += gap < kMargin ? 1 : 0;
+  }
+  EXPECT_GT(near, 3000);
+}
+
+// Two pins across each other: the distance of their axes less both radii.
+TEST(CrossedPins, AreAsFarApartAsTheirAxesLessTheirRadii) {
+  constexpr double kFirst = 0.01;
+  constexpr double kSecond = 0.006;
+  Pair pair(make(Kind::cylinder, {kFirst, 0.1}), make(Kind::cylinder, {kSecond, 0.1}));
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    Draw draw(seed);
+    const double gap = draw.between(-0.0005, 0.0005);
+    const double turn = draw.between(-3, 3);
+    const Vector3d across(std::cos(turn), std::sin(turn), 0);
+    const Vector3d along = Vector3d::UnitZ().cross(across);
+    const double lean = draw.between(0.4, 2.7);
+    const Vector3d axis = std::cos(lean) * Vector3d::UnitZ() + std::sin(lean) * along;
+    const Vector3d p = (kFirst + kSecond + gap) * across + draw.between(-0.03, 0.03) * Vector3d::UnitZ() +
+                       draw.between(-0.03, 0.03) * axis;
+    const Quaterniond rotation = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis);
+    ASSERT_NEAR(pair.gap_at({p, rotation}, kMargin), gap, kRounding) << "seed " << seed;
+  }
+}
+
+// Edge across edge, both leaning: where they overlap the normal is across both and the gap is that of the two lines.
+// Before they do, a gap may be the smaller one to the planes of the two faces; it never is larger.
+TEST(CrossedEdges, AreAsFarApartAsTheirLines) {
+  Pair pair(box({0.05, 0.05, 0.05}), box({0.05, 0.05, 0.05}));
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    Draw draw(seed);
+    const double gap = draw.between(-0.0003, 0.0003);
+    // The first's edge x = z = 0.025 along y, the second's edge x = z = -0.025 along its y, turned about the bisector.
+    const Vector3d bisector = Vector3d(1, 0, 1).normalized();
+    const Quaterniond turn(Eigen::AngleAxisd(draw.between(0.3, 1.3) * (seed % 2 == 0 ? 1 : -1), bisector));
+    const Vector3d here(0.025, draw.between(-0.02, 0.02), 0.025);
+    const Vector3d there(-0.025, draw.between(-0.02, 0.02), -0.025);
+    const Pose X{here + gap * bisector - turn * there, turn};
+    const double found = pair.gap_at(X, kMargin);
+    if (gap > 0) {
+      ASSERT_LE(found, gap + kRounding) << "seed " << seed;
+      ASSERT_GE(found, 0.5 * gap) << "seed " << seed;
+      continue;
+    }
+    ASSERT_NEAR(found, gap, kRounding) << "seed " << seed;
+    const auto& rows = pair.link.rows().rows();
+    const auto deepest =
+        std::min_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.gap < b.gap; });
+    ASSERT_GT(deepest->normal.dot(bisector), 1 - 1e-9);
+  }
+}
+
+// A corner above a plane: the gap is the corner's height, whatever the box's orientation.
+TEST(CornerOverAPlane, IsAsFarAwayAsItsHeight) {
+  Pair pair(box({0.2, 0.2, 0.02}), box(kBox));
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    Draw draw(seed);
+    const Quaterniond rotation = draw.rotation();
+    const Matrix3d R = rotation.toRotationMatrix();
+    const double lowest = R.row(2).cwiseAbs().dot(0.5 * kBox);
+    const double gap = draw.between(-0.0005, 0.0005);
+    const Vector3d p(draw.between(-0.06, 0.06), draw.between(-0.06, 0.06), 0.01 + lowest + gap);
+    ASSERT_NEAR(pair.gap_at({p, rotation}, kMargin), gap, kRounding) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace verisim::exact::test
