@@ -26,7 +26,7 @@ class StoredRows {
         fail(ErrorKind::check_failed, "{}: is in the simulation and not in the run file", column.path);
       if (stored->dtype != column.dtype || stored->width != column.width)
         fail(ErrorKind::check_failed, "{}: has another shape in the run file", column.path);
-      columns_.push_back({column, file.column(*stored)});
+      columns_.push_back({column, file.column(*stored), rows_of_frames(column, simulated, file)});
     }
   }
   [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -34,8 +34,10 @@ class StoredRows {
   /// "frame 1201, /state/body/pin/twist[3]: stored 3f68000000000001, simulated 3f68000000000000", or empty.
   [[nodiscard]] std::string first_difference(std::size_t frame, const std::vector<std::byte>& row) const {
     for (const Stored& s : columns_) {
+      const std::size_t stored_row = s.row_of_frame.empty() ? frame : s.row_of_frame[frame];
+      if (stored_row == kNoRow) continue;
       const std::byte* simulated = row.data() + s.column.offset;
-      const std::byte* stored = s.bytes.data() + frame * s.column.bytes();
+      const std::byte* stored = s.bytes.data() + stored_row * s.column.bytes();
       if (std::memcmp(simulated, stored, s.column.bytes()) == 0) continue;
       return describe(frame, s.column, stored, simulated);
     }
@@ -43,10 +45,28 @@ class StoredRows {
   }
 
  private:
+  static constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
   struct Stored {
     Column column;
     std::vector<std::byte> bytes;
+    std::vector<std::size_t> row_of_frame;  ///< empty: every frame has one
   };
+
+  /// Where the values of each frame lie in a column to which not every frame adds a row.
+  static std::vector<std::size_t> rows_of_frames(const Column& column, const Schema& simulated, const RunFile& file) {
+    std::vector<std::size_t> rows;
+    for (const Column& due : simulated.columns()) {
+      if (column.due.empty() || due.path != column.due) continue;
+      const std::vector<std::byte> counts = file.column(due);
+      std::size_t next = 0;
+      for (std::size_t at = 0; at < counts.size(); at += sizeof(std::uint32_t)) {
+        std::uint32_t count = 0;
+        std::memcpy(&count, &counts[at], sizeof count);
+        rows.push_back(count != 0 ? next++ : kNoRow);
+      }
+    }
+    return rows;
+  }
 
   static std::string hex(const std::byte* bytes, std::size_t size) {
     std::string text;

@@ -5,7 +5,6 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/cli/wii_trace.hpp"
 #include "engine/geometry/write_file.hpp"
 #include "engine/wii/coverage.hpp"
 #include "engine/wii/place.hpp"
@@ -126,7 +125,7 @@ Vector3d vector_of(const std::vector<double>& v) {
 wii::PlaceOptions place_options(const PlaceCommand& c) {
   wii::PlaceOptions options;
   if (!c.trace.empty()) {
-    const WiiRecording recording = read_wii_recording(c.trace, {.allow_gaps = true});
+    const wii::Recording recording = read_wii_file(c.trace, {.allow_gaps = true});
     if (recording.truth.empty())
       fail(ErrorKind::input, "{}: no columns px … qw; a trace must know the head's poses to place a remote for them",
            c.trace);

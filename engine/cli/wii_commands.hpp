@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/wii/tracker.hpp"
+#include "engine/record/trace.hpp"
+#include "engine/wii/report_source.hpp"
 
 namespace verisim::cli {
 
@@ -13,6 +14,8 @@ void add_wii_track(CLI::App& wii_command, int& exit_code);
 void add_wii_serve(CLI::App& wii_command, int& exit_code);
 void add_wii_listen(CLI::App& wii_command, int& exit_code);
 
+/// A wii trace that the command line names. Error(input).
+[[nodiscard]] wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits);
 /// All that take one trace: all but stereo.
 [[nodiscard]] std::vector<std::string> trackers_of_one_remote();
 

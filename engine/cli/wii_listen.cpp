@@ -8,9 +8,9 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/run_loop.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/cli/wii_trace.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/geometry/write_file.hpp"
+#include "engine/simulation/wii_recording.hpp"
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
 
@@ -93,11 +93,11 @@ void listen_to(vrpn::Client& client, const ListenCommand& c, ChannelRecord& reco
   }
 }
 
-std::string poses_of(const WiiRecording& recording, const std::string& tracker_name) {
+std::string poses_of(const wii::Recording& recording, const std::string& tracker_name) {
   const std::unique_ptr<wii::Tracker> tracker = wii::make_tracker(tracker_name, recording.settings);
   std::string text = kPoseHeader;
-  for (const WiiSample& sample : recording.samples)
-    text += pose_row(sample.t, tracker->update(sample.t, sample.channels));
+  for (std::size_t i = 0; i < recording.t.size(); ++i)
+    text += pose_row(recording.t[i], tracker->update(recording.t[i], recording.channels[i]));
   return text;
 }
 
@@ -105,7 +105,8 @@ int listen(const ListenCommand& c) {
   if (c.out.empty() && c.poses.empty())
     fail(ErrorKind::usage, "wii listen: nothing to write; give -o TRACE, --poses CSV, or both");
   ChannelRecord record(c);
-  wii::TrackerSettings settings = settings_of(c.remote, record.trace());  // doubts --leds and --fov before listening
+  wii::TrackerSettings settings =
+      wii_settings_of(c.remote, record.trace());  // doubts --leds and --fov before listening
   if (!c.poses.empty()) (void)wii::make_tracker(c.tracker, settings);
   vrpn::Client client(vrpn::parse_remote_name(c.remote), !c.no_udp);
   catch_interrupts();
@@ -116,7 +117,7 @@ int listen(const ListenCommand& c) {
     fail(ErrorKind::input, "{}: no report with {} channels came ({} others did); is it the analog device?", c.remote,
          wii::kChannelsMin, record.left_out());
   if (!c.out.empty()) write_trace(c.out, record.trace());
-  if (!c.poses.empty()) write_file(c.poses, poses_of(recording_of(c.remote, record.trace()), c.tracker));
+  if (!c.poses.empty()) write_file(c.poses, poses_of(wii_recording_of(c.remote, record.trace()), c.tracker));
   if (c.json) {
     const nlohmann::ordered_json j = {
         {"reports", reports}, {"left_out", record.left_out()}, {"interrupted", was_interrupted()}};

@@ -8,7 +8,6 @@
 #include "engine/cli/head_server.hpp"
 #include "engine/cli/run_loop.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/cli/wii_source.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/wii/validate.hpp"
 
@@ -33,12 +32,14 @@ struct ServeCommand {
   TraceLimits limits;
 };
 
-std::unique_ptr<WiiSource> source_of(const ServeCommand& c) {
+std::unique_ptr<wii::ReportSource> source_of(const ServeCommand& c) {
   if (c.trace.empty() == c.trajectory.empty())
     fail(ErrorKind::usage, "wii serve: give either --trace FILE or --trajectory NAME");
-  if (!c.trace.empty()) return recorded_source(c.trace, c.limits);
-  return virtual_source(c.trajectory, c.sensor,
-                        c.tracker == "three-led" ? wii::LedLayout::triangle() : wii::LedLayout{}, c.seed);
+  if (!c.trace.empty()) return wii::make_recorded_source(read_wii_file(c.trace, c.limits));
+  return wii::make_virtual_source({.trajectory = c.trajectory,
+                                   .sensor = c.sensor,
+                                   .leds = c.tracker == "three-led" ? wii::LedLayout::triangle() : wii::LedLayout{},
+                                   .seed = c.seed});
 }
 
 void tell(vrpn::Server& server, bool quiet) {
@@ -52,11 +53,11 @@ struct Served {
 };
 
 /// Publishes at the pace of the samples' own times until the source or `duration` ends or Ctrl-C.
-Served publish_all(HeadServer& head, WiiSource& source, wii::Tracker& tracker, const ServeCommand& c) {
+Served publish_all(HeadServer& head, wii::ReportSource& source, wii::Tracker& tracker, const ServeCommand& c) {
   Served served;
   const StopWatch watch;
   const vrpn::Timestamp begin = wire_time();
-  WiiSample sample;
+  wii::SensedReport sample;
   while (source.next(sample) && sample.t <= c.duration) {
     for (double left = sample.t - watch.seconds(); left > 0; left = sample.t - watch.seconds()) {
       head.server().turn(wire_time(), static_cast<int>(std::ceil(std::min(left, 1.0) * 1000)));
@@ -88,7 +89,7 @@ void say_farewell(HeadServer& head, bool quiet) {
 }
 
 int serve(const ServeCommand& c) {
-  const std::unique_ptr<WiiSource> source = source_of(c);
+  const std::unique_ptr<wii::ReportSource> source = source_of(c);
   const std::unique_ptr<wii::Tracker> tracker = wii::make_tracker(c.tracker, source->settings());
   HeadServer head(vrpn::resolve(c.host, c.port), c.devices);
   catch_interrupts();

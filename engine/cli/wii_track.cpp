@@ -2,10 +2,15 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/cli/wii_trace.hpp"
 #include "engine/geometry/write_file.hpp"
+#include "engine/simulation/wii_recording.hpp"
 
 namespace verisim::cli {
+
+wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits) {
+  Inputs inputs = Inputs::live(".", {file});
+  return read_wii_recording(inputs, file, limits);
+}
 
 std::vector<std::string> trackers_of_one_remote() {
   std::vector<std::string> names = wii::tracker_names();
@@ -23,16 +28,16 @@ std::string pose_row(double t, const wii::Report& report) {
 
 namespace {
 
-std::string track(const WiiRecording& first, const WiiRecording* second, const std::string& name) {
+std::string track(const wii::Recording& first, const wii::Recording* second, const std::string& name) {
   wii::TrackerSettings settings = first.settings;
   if (second != nullptr) settings.X_R1R2 = first.X_WR.inverse() * second->X_WR;
   const std::unique_ptr<wii::Tracker> tracker = wii::make_tracker(name, settings);
   std::string text = kPoseHeader;
   std::size_t other = 0;
-  for (const WiiSample& sample : first.samples) {
-    for (; second != nullptr && other < second->samples.size() && second->samples[other].t <= sample.t; ++other)
-      (void)tracker->update(second->samples[other].t, second->samples[other].channels, 1);
-    text += pose_row(sample.t, tracker->update(sample.t, sample.channels));
+  for (std::size_t i = 0; i < first.t.size(); ++i) {
+    for (; second != nullptr && other < second->t.size() && second->t[other] <= first.t[i]; ++other)
+      (void)tracker->update(second->t[other], second->channels[other], 1);
+    text += pose_row(first.t[i], tracker->update(first.t[i], first.channels[i]));
   }
   return text;
 }
@@ -58,10 +63,10 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
     if (o->second.empty() == (o->tracker == "stereo"))
       fail(ErrorKind::usage, "wii track: --second and --tracker stereo belong together; {}",
            o->second.empty() ? "name the second remote's trace" : "choose --tracker stereo");
-    const WiiRecording first = read_wii_recording(o->trace, o->limits);
-    WiiRecording second;
+    const wii::Recording first = read_wii_file(o->trace, o->limits);
+    wii::Recording second;
     if (!o->second.empty()) {
-      second = read_wii_recording(o->second, o->limits);
+      second = read_wii_file(o->second, o->limits);
       if (!second.placed)
         fail(ErrorKind::input, "{}: no '# remote_pose:'; stereo must know where the second remote is", o->second);
     }

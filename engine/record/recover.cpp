@@ -49,13 +49,17 @@ Handle open_although_left_open(const std::string& path) {
 
 std::size_t cut_to_shortest(hid_t file) {
   const std::vector<StoredColumn> columns = read_columns(file);
-  const std::size_t rows = shortest(columns);
-  for (const StoredColumn& stored : columns) {
+  const std::size_t frames = frames_of(file, columns);
+  std::vector<std::size_t> rows_wanted;  // before anything is cut: one column says how long another has to be
+  for (const StoredColumn& stored : columns) rows_wanted.push_back(rows_of(file, columns, stored.column, frames));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const StoredColumn& stored = columns[i];
+    const std::size_t rows = rows_wanted[i];
     if (stored.rows == rows) continue;
     const hsize_t extent[2] = {rows, stored.column.width};
     check_status(H5Dset_extent(hdf5::open_dataset(file, stored.column.path), extent), stored.column.path.c_str());
   }
-  return rows;
+  return frames;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "engine/record/run_columns.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/base/error.hpp"
 #include "engine/record/hdf5_wrapper.hpp"
@@ -30,6 +31,7 @@ StoredColumn read_column(hid_t dataset, const std::string& path) {
   column.units = hdf5::read_string(dataset, "units");
   column.description = hdf5::read_string(dataset, "description");
   if (hdf5::has_attribute(dataset, "names")) column.enum_names = hdf5::read_strings(dataset, "names");
+  if (hdf5::has_attribute(dataset, "rows_where")) column.due = hdf5::read_string(dataset, "rows_where");
   return stored;
 }
 
@@ -44,6 +46,26 @@ void collect(hid_t group, const std::string& prefix, std::vector<std::pair<std::
       found.emplace_back(hdf5::read_integer(object, "order"), read_column(object, path));
     }
   }
+}
+
+/// The first `frames` values of the column that says which frames add a row to `column`.
+std::vector<std::uint32_t> due_counts(hid_t file, const std::vector<StoredColumn>& columns, const Column& column,
+                                      std::size_t frames) {
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const StoredColumn& other) { return other.column.path == column.due; });
+  if (found == columns.end() || found->column.dtype != Dtype::u32 || found->column.width != 1 || found->rows < frames)
+    throw hdf5::Failure(column.path + ": nothing says which frames it belongs to");
+  std::vector<std::uint32_t> counts(frames);
+  if (frames == 0) return counts;
+  const Handle dataset = hdf5::open_dataset(file, column.due);
+  const Handle space(hdf5::check(H5Dget_space(dataset), "shape"), H5Sclose);
+  const hsize_t start = 0;
+  const hsize_t count = frames;
+  const Handle memory(hdf5::check(H5Screate_simple(1, &count, nullptr), "shape"), H5Sclose);
+  hdf5::check_status(H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr), "rows");
+  hdf5::check_status(H5Dread(dataset, hdf5::memory_type(Dtype::u32), memory, space, H5P_DEFAULT, counts.data()),
+                     column.due.c_str());
+  return counts;
 }
 
 }  // namespace
@@ -64,10 +86,28 @@ std::vector<StoredColumn> read_columns(hid_t file) {
   return columns;
 }
 
-std::size_t shortest(const std::vector<StoredColumn>& columns) {
-  if (columns.empty()) return 0;
-  return std::min_element(columns.begin(), columns.end(), [](const auto& a, const auto& b) { return a.rows < b.rows; })
-      ->rows;
+std::size_t frames_of(hid_t file, const std::vector<StoredColumn>& columns) {
+  std::optional<std::size_t> frames;
+  for (const StoredColumn& stored : columns)
+    if (stored.column.due.empty()) frames = std::min(frames.value_or(stored.rows), stored.rows);
+  if (!frames) return 0;
+  for (const StoredColumn& stored : columns) {
+    if (stored.column.due.empty()) continue;
+    const std::vector<std::uint32_t> counts = due_counts(file, columns, stored.column, *frames);
+    std::size_t rows = 0;
+    for (std::size_t frame = 0; frame < *frames; ++frame) {
+      if (counts[frame] == 0) continue;
+      if (rows == stored.rows) frames = frame;  // the frames from here on have lost theirs
+      ++rows;
+    }
+  }
+  return *frames;
+}
+
+std::size_t rows_of(hid_t file, const std::vector<StoredColumn>& columns, const Column& column, std::size_t frames) {
+  if (column.due.empty()) return frames;
+  const std::vector<std::uint32_t> counts = due_counts(file, columns, column, frames);
+  return static_cast<std::size_t>(std::count_if(counts.begin(), counts.end(), [](auto c) { return c != 0; }));
 }
 
 void check_is_run(const std::string& path, hid_t file) {

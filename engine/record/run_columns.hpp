@@ -19,8 +19,11 @@ struct StoredColumn {
 /// All columns in the order of the schema that was written. Throws hdf5::Failure if one is missing or damaged.
 [[nodiscard]] std::vector<StoredColumn> read_columns(hid_t file);
 
-/// The smallest number of rows; 0 if there is no column.
-[[nodiscard]] std::size_t shortest(const std::vector<StoredColumn>& columns);
+/// The frames of which every column has what it should; 0 if there is no column. Throws hdf5::Failure.
+[[nodiscard]] std::size_t frames_of(hid_t file, const std::vector<StoredColumn>& columns);
+/// The rows that these frames have added to a column. Throws hdf5::Failure.
+[[nodiscard]] std::size_t rows_of(hid_t file, const std::vector<StoredColumn>& columns, const Column& column,
+                                  std::size_t frames);
 
 /// Throws Error(input) unless the open file says that it is a run of a version that this program reads.
 void check_is_run(const std::string& path, hid_t file);

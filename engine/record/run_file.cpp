@@ -32,6 +32,7 @@ struct RunFile::Implementation {
   std::map<std::string, Attribute> summary;
   Schema schema;
   std::size_t rows = 0;
+  std::vector<StoredColumn> columns;
 
   ~Implementation() {
     const hdf5::Session session;
@@ -57,8 +58,8 @@ struct RunFile::Implementation {
     header.files = read_input_files(file);
     header.models = read_input_models(file);
     summary = hdf5::read_attributes(hdf5::open_group(file, "/summary"));
-    const std::vector<StoredColumn> columns = read_columns(file);
-    rows = shortest(columns);
+    columns = read_columns(file);
+    rows = frames_of(file, columns);
     bool state_ended = false;  // Schema::add asserts what a damaged file may break
     for (const StoredColumn& stored : columns) {
       const bool state = stored.column.path.starts_with("/state/") && stored.column.path != "/state/hash";
@@ -99,9 +100,10 @@ std::vector<std::byte> RunFile::column(const Column& column) const {
     const Handle dataset = hdf5::open_dataset(implementation_->file, column.path);
     const Handle type(check(H5Dget_type(dataset), "type"), H5Tclose);
     const Handle space(check(H5Dget_space(dataset), "shape"), H5Sclose);
+    const std::size_t rows = rows_of(implementation_->file, implementation_->columns, column, implementation_->rows);
     const hsize_t start[2] = {0, 0};
-    const hsize_t block[2] = {implementation_->rows, column.width};
-    std::vector<std::byte> values(implementation_->rows * column.bytes());
+    const hsize_t block[2] = {rows, column.width};
+    std::vector<std::byte> values(rows * column.bytes());
     if (values.empty()) return values;
     const Handle memory(check(H5Screate_simple(column.width == 1 ? 1 : 2, block, nullptr), "shape"), H5Sclose);
     check_status(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, block, nullptr), "rows");

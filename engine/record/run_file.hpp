@@ -21,7 +21,7 @@
 
 namespace verisim {
 
-/// One dataset of which every frame adds a row.
+/// One dataset that grows with the frames.
 struct Column {
   std::string path;  ///< "/state/body/pin/pose"
   Dtype dtype = Dtype::f64;
@@ -31,6 +31,9 @@ struct Column {
   std::size_t offset = 0;  ///< bytes from the start of the row; set by Schema::add
   /// u8 of width 1: value i means enum_names[i] (an HDF5 enum). Otherwise names of the components (stages of /timing).
   std::vector<std::string> enum_names;
+  /// Empty: every frame adds a row. Else the path of a u32 column of the same schema: only frames where that is not 0
+  /// add a row to this one (what runs at a rate of its own).
+  std::string due = {};
   [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
 };
 
@@ -122,10 +125,11 @@ class RunFile {
   RunFile(RunFile&&) noexcept;
 
   [[nodiscard]] const RunHeader& header() const;
-  [[nodiscard]] const std::map<std::string, Attribute>& summary() const;    ///< empty if the run was killed
-  [[nodiscard]] const Schema& schema() const;                               ///< as stored
-  [[nodiscard]] std::size_t rows() const;                                   ///< the shortest column's length
-  [[nodiscard]] std::vector<std::byte> column(const Column& column) const;  ///< rows() * column.bytes()
+  [[nodiscard]] const std::map<std::string, Attribute>& summary() const;  ///< empty if the run was killed
+  [[nodiscard]] const Schema& schema() const;                             ///< as stored
+  [[nodiscard]] std::size_t rows() const;                                 ///< frames: the shortest column's length
+  /// rows() * column.bytes(); of a column with `due`, as many as frames have added.
+  [[nodiscard]] std::vector<std::byte> column(const Column& column) const;
   [[nodiscard]] std::vector<Event> events() const;
   [[nodiscard]] bool recovered() const;
 

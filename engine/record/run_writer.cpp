@@ -153,6 +153,7 @@ void RunWriter::create(const RunHeader& header) {
     hdf5::write_attribute(dataset, "description", column.description);
     hdf5::write_attribute(dataset, "order", order++);
     if (!column.enum_names.empty()) hdf5::write_attribute(dataset, "names", column.enum_names);
+    if (!column.due.empty()) hdf5::write_attribute(dataset, "rows_where", column.due);
   }
   const Handle events = growing_dataset(file, "/events", event_type(), 1, kChunkEvents);
   hdf5::write_attribute(events, "units", std::string("s, 1, 1"));
@@ -165,7 +166,10 @@ void RunWriter::start_swmr() {
       check(H5Fopen(part_.path().c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, hdf5::file_access()), path_.c_str()),
       H5Fclose);
   for (const Column& column : schema_.columns()) {
-    columns_.push_back({column, column_type(column), open_growing(file_, column.path, kChunkRows * column.bytes())});
+    columns_.push_back({.column = column,
+                        .type = column_type(column),
+                        .dataset = open_growing(file_, column.path, kChunkRows * column.bytes()),
+                        .due = due_offset(column)});
   }
   event_type_ = event_type();
   event_dataset_ = open_growing(file_, "/events", kChunkEvents * sizeof(StoredEvent));
@@ -203,15 +207,36 @@ void RunWriter::reserve(std::size_t rows, std::size_t events) {
 void RunWriter::append(const std::byte* rows, std::size_t count) {
   const hdf5::Session session;
   guard([&] {
-    for (const Stored& stored : columns_) {
-      const std::size_t bytes = stored.column.bytes();
-      packed_.resize(std::max(packed_.size(), count * bytes));
-      const std::byte* from = rows + stored.column.offset;
-      for (std::size_t i = 0; i < count; ++i) std::memcpy(&packed_[i * bytes], from + i * schema_.row_bytes(), bytes);
-      append_values(stored.dataset, stored.type, stored.column.width, rows_, count, packed_.data());
+    for (Stored& stored : columns_) {
+      const std::size_t packed = pack(stored, rows, count);
+      if (packed == 0) continue;
+      append_values(stored.dataset, stored.type, stored.column.width, stored.rows, packed, packed_.data());
+      stored.rows += packed;
     }
   });
-  rows_ += count;
+  has_rows_ = has_rows_ || count > 0;
+}
+
+std::optional<std::size_t> RunWriter::due_offset(const Column& column) const {
+  if (column.due.empty()) return {};
+  for (const Column& other : schema_.columns())
+    if (other.path == column.due && other.dtype == Dtype::u32 && other.width == 1) return other.offset;
+  VERISIM_ASSERT(!"a column's due is another column of its schema");
+  return {};
+}
+
+// The values of one column, one after the other. Returns how many of the rows have one.
+std::size_t RunWriter::pack(const Stored& stored, const std::byte* rows, std::size_t count) {
+  const std::size_t bytes = stored.column.bytes();
+  packed_.resize(std::max(packed_.size(), count * bytes));
+  std::size_t packed = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::byte* row = rows + i * schema_.row_bytes();
+    std::uint32_t due = 1;
+    if (stored.due) std::memcpy(&due, row + *stored.due, sizeof due);
+    if (due != 0) std::memcpy(&packed_[packed++ * bytes], row + stored.column.offset, bytes);
+  }
+  return packed;
 }
 
 void RunWriter::append(const StoredEvent* events, std::size_t count) {
@@ -224,7 +249,7 @@ void RunWriter::flush() {
   const hdf5::Session session;
   guard([&] {
     check_status(H5Fflush(file_, H5F_SCOPE_LOCAL), path_.c_str());
-    if (rows_ > 0) part_.commit();
+    if (has_rows_) part_.commit();
   });
 }
 

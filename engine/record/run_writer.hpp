@@ -2,12 +2,14 @@
 // For one thread at a time; knows no ring and no clock. All functions throw Error(io).
 //
 // Layout beyond INTERFACES section 2: "/" says how many `columns` there are and each carries `order` (its
-// place in the schema) and, where its values or components have names, `names`; /inputs/files/N and
+// place in the schema), where its values or components have names, `names`, and where not every frame adds a row,
+// `rows_where`, the column that is not 0 in the frames that do; /inputs/files/N and
 // /inputs/models/I/J number files, models and parts, whose names are attributes (names may be equal or hold '/').
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,11 +56,14 @@ class RunWriter {
   struct Stored {
     Column column;
     hdf5::Handle type, dataset;
+    std::size_t rows = 0;
+    std::optional<std::size_t> due;  ///< offset in the row of the count that says whether the column gets one
   };
   std::string path_;
   Replacement part_;
   Schema schema_;
-  std::size_t rows_ = 0, events_ = 0;
+  std::size_t events_ = 0;
+  bool has_rows_ = false;
   hdf5::Handle file_;
   std::vector<Stored> columns_;
   hdf5::Handle event_type_, event_dataset_;
@@ -70,6 +75,8 @@ class RunWriter {
   void create(const RunHeader& header);
   void start_swmr();
   void close_handles();
+  [[nodiscard]] std::optional<std::size_t> due_offset(const Column& column) const;
+  std::size_t pack(const Stored& stored, const std::byte* rows, std::size_t count);
   template <typename Work>
   void guard(Work work);
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "engine/record/trace.hpp"
 #include "engine/script/values.hpp"
 
 namespace verisim::script {
@@ -57,6 +56,7 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
   add_node_words(L);
   add_body_words(L);
   add_device_words(L);
+  add_wii_words(L);
   add_simulation_words(L);
   add_action_words(L);
   add_file_words(L);
@@ -83,6 +83,7 @@ void ScriptState::finish() {
   name_devices();
   finish_devices();
   bind_devices();
+  finish_heads();
   for (const auto& grasp : grasps) {
     const DeviceNode& device = *grasp.first;
     scene.grasps.push_back(
@@ -130,7 +131,13 @@ void ScriptState::finish_devices() {
 void ScriptState::bind_devices() {
   std::vector<std::string> names;
   for (const auto& device : devices) names.push_back(innermost(*device).name);
+  for (const auto& head : heads) {
+    if (std::find(names.begin(), names.end(), head->name) != names.end())
+      fail(ErrorKind::input, "{}: there is a device '{}' already; give the WiiHead another name=", head->place,
+           head->name);
+  }
   for (const auto& [wanted, source] : options.binds) {
+    if (bind_head(wanted, source)) continue;
     const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
       fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted,
@@ -143,6 +150,21 @@ void ScriptState::bind_devices() {
     at_place(fmt::format("--bind {}={}", wanted, source), [&, bound = source] {
       drive(*node.device, make_replay(node.name, read_samples(inputs, bound, TraceLimits{}.max_gap, false)));
     });
+  }
+}
+
+bool ScriptState::bind_head(const std::string& wanted, const std::string& source) {
+  const auto found = std::find_if(heads.begin(), heads.end(), [&](const auto& head) { return head->name == wanted; });
+  if (found == heads.end()) return false;
+  (*found)->trace = source;
+  (*found)->place = fmt::format("--bind {}={}", wanted, source);
+  return true;
+}
+
+void ScriptState::finish_heads() {
+  for (const auto& node : heads) {
+    at_place(node->place, [&] { make_head(*node, inputs, scene.parameters.seed); });
+    scene.heads.push_back(node->head);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "engine/base/random.hpp"
 #include "engine/device/hardware.hpp"
 #include "engine/device/sources.hpp"
+#include "engine/record/trace.hpp"
 #include "engine/script/assembly_node.hpp"
 #include "engine/script/frame_actions.hpp"
 #include "engine/script/sandbox.hpp"
@@ -42,6 +43,20 @@ struct DeviceNode {
   std::shared_ptr<DeviceNode> inner;        ///< hardware: its source (may be null); filters: what they wrap
   std::shared_ptr<Device> device;           ///< null until finish_devices
 };
+
+/// A WiiHead as described; made real by finish, when seed and bindings are known.
+struct HeadNode {
+  std::string name;
+  std::string place;  ///< FILE:LINE of the word
+  std::string tracker = "scaat";
+  std::string trace;                         ///< a wii trace; empty: virtual_remote
+  TraceLimits limits;                        ///< of the trace
+  wii::VirtualSourceOptions virtual_remote;  ///< name and seed are filled in by make_head
+  Pose X_WL;                                 ///< where the remote stands, levelled
+  std::shared_ptr<wii::Head> head;           ///< null until make_head
+};
+/// Error(input) for a trace that cannot be read or does not fit the tracker.
+void make_head(HeadNode& node, Inputs& inputs, std::uint64_t seed);
 
 struct BodyHandle {
   std::size_t index;  ///< in Scene::bodies
@@ -93,6 +108,7 @@ class ScriptState : public Sandbox {
   Scene scene;
   bool scene_taken = false;
   std::vector<std::shared_ptr<DeviceNode>> devices;  ///< in the order of addDevice
+  std::vector<std::shared_ptr<HeadNode>> heads;      ///< in the order of WiiHead
   std::vector<std::pair<std::shared_ptr<DeviceNode>, std::size_t>> grasps;
   std::vector<std::shared_ptr<CollisionCounter>> counters;
   Simulation* simulation = nullptr;  ///< null while the scene is built
@@ -118,6 +134,8 @@ class ScriptState : public Sandbox {
   void check_sets() const;
   void finish_devices();
   void bind_devices();
+  [[nodiscard]] bool bind_head(const std::string& wanted, const std::string& source);
+  void finish_heads();
   void name_devices();
   void frame();
 
@@ -146,6 +164,7 @@ void add_scene_words(lua_State* L);       ///< defineSimulationParameters, addOb
 void add_node_words(lua_State* L);        ///< Model, modelParts, Transform, Group, MatrixTransform, Solid
 void add_body_words(lua_State* L);        ///< what addObject returns
 void add_device_words(lua_State* L);      ///< Devices, filters, addDevice, grasp
+void add_wii_words(lua_State* L);         ///< WiiHead
 void add_simulation_words(lua_State* L);  ///< simulation, CollisionCounter
 void add_action_words(lua_State* L);      ///< Actions, runbuf
 void add_file_words(lua_State* L);        ///< require, dofile, runfile, vrjLua

@@ -20,6 +20,7 @@ using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 struct Node;
 struct BodyHandle;
 struct DeviceNode;
+struct HeadNode;
 struct CollisionCounter;
 struct FrameActionHandle;
 struct Drawing;
@@ -41,6 +42,8 @@ template <>
 inline constexpr const char* kTypeName<BodyHandle> = "body";
 template <>
 inline constexpr const char* kTypeName<std::shared_ptr<DeviceNode>> = "device";
+template <>
+inline constexpr const char* kTypeName<std::shared_ptr<HeadNode>> = "WiiHead";
 template <>
 inline constexpr const char* kTypeName<std::shared_ptr<CollisionCounter>> = "CollisionCounter";
 template <>

@@ -36,6 +36,11 @@ class RowWriter {
   std::byte* at_;
 };
 
+/// Counts the reports of a frame. A frame that took some adds a row to the head's datasets: the last of them.
+std::string reports_of(const wii::Head& head) {
+  return "/cost/wii/" + head.name() + "/reports";
+}
+
 }  // namespace
 
 void Simulation::Implementation::make_schema() {
@@ -67,6 +72,20 @@ void Simulation::Implementation::make_schema() {
     add(path + "/wrench", Dtype::f64, 6, "N, N m",
         "on the second body by the first, about the second's centre of mass; world");
   }
+  for (const auto& head : heads) {
+    const std::string path = "/state/wii/" + head->name();
+    const std::string due = reports_of(*head);
+    const auto add_at_reports = [&](const char* name, Dtype dtype, std::size_t width, const char* units,
+                                    const char* what) {
+      schema.add({path + name, dtype, width, units, what, 0, {}, due});
+    };
+    add_at_reports("/time", Dtype::f64, 1, "s", "when the remote took the report");
+    add_at_reports("/channels", Dtype::f64, wii::kChannels, "1, g, pixel",
+                   "battery, acceleration x y z, four times u v size (-1: nothing seen)");
+    add_at_reports("/truth_pose", Dtype::f64, 7, "m, 1", "true head in levelled coordinates; NaN if not known");
+    add_at_reports("/estimate_pose", Dtype::f64, 7, "m, 1", "what the tracker says, in levelled coordinates");
+    add_at_reports("/valid", Dtype::u8, 1, "1", "1: the tracker stands by it");
+  }
   add("/state/energy", Dtype::f64, 8, "J",
       "kinetic, coupling springs, gravity, dissipated, given to contact, numerical, input by hands, residual of their "
       "balance");
@@ -81,6 +100,7 @@ void Simulation::Implementation::make_schema() {
   add("/cost/recognitions", Dtype::u32, 1, "1", "pairs of feature sets recognized");
   add("/cost/exact_samples", Dtype::u32, 1, "1", "samples of precise edges tried against precise faces");
   add("/cost/solver_steps", Dtype::u32, 1, "1", "Newton iterations of the exact response");
+  for (const auto& head : heads) add(reports_of(*head), Dtype::u32, 1, "1", "reports tracked");
   row.assign(schema.row_bytes(), std::byte{0});
 }
 
@@ -107,6 +127,13 @@ void Simulation::Implementation::fill_row() {
     out.put(link.depth_max);
     out.put(link.on_second);
   }
+  for (const auto& head : heads) {
+    out.put(head->sensed().t);
+    for (const double channel : head->sensed().channels) out.put(channel);
+    out.put(head->sensed().X_LH);
+    out.put(head->estimate().pose);
+    out.put(static_cast<std::uint8_t>(head->estimate().valid));
+  }
   for (const double e : {energy.kinetic, energy.coupling, energy.gravity, ledger.dissipated(), ledger.contact(),
                          ledger.numerical(), ledger.input(), ledger.residual(energy)})
     out.put(e);
@@ -117,6 +144,7 @@ void Simulation::Implementation::fill_row() {
        {cost.pairs_tested, cost.clusters, cost.points_tested, cost.voxels_read, cost.contacts, cost.lookups,
         cost.recognitions, cost.exact_samples, cost.solver_steps})
     out.put(static_cast<std::uint32_t>(count));
+  for (const auto& head : heads) out.put(std::uint32_t{head->taken()});
   VERISIM_ASSERT(out.at() == row.data() + row.size());
 }
 

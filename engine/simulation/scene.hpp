@@ -12,6 +12,7 @@
 #include "engine/constraint/reduction.hpp"
 #include "engine/device/device.hpp"
 #include "engine/geometry/part.hpp"
+#include "engine/wii/head.hpp"
 
 namespace verisim {
 
@@ -62,8 +63,9 @@ struct Grasp {
 
 struct Scene {
   SimulationParameters parameters;
-  std::vector<BodyDescription> bodies;           ///< in the order of addObject
-  std::vector<std::shared_ptr<Device>> devices;  ///< in the order of addDevice: outermost filter of each chain
+  std::vector<BodyDescription> bodies;            ///< in the order of addObject
+  std::vector<std::shared_ptr<Device>> devices;   ///< in the order of addDevice: outermost filter of each chain
+  std::vector<std::shared_ptr<wii::Head>> heads;  ///< tracked beside the loop, in the order of WiiHead
   std::vector<Grasp> grasps;
   double grasp_distance = 0.1;  ///< m, handle to body's nearest point, for button grasping
 };

@@ -53,6 +53,7 @@ void Simulation::step() {
   w.render();  // coupling wrench -> what the hardware is told to render
   timer.done(5);
   ++w.frame;
+  w.follow_heads();  // Wii remotes, at the times of their reports
   w.clocks.run_due(w.frame,
                    static_cast<double>(w.frame) * w.dt);  // script, trackers, firmware: same thread, fixed order
   timer.done(6);
@@ -220,6 +221,10 @@ void Simulation::Implementation::render() {
     devices[d]->render(held[d].on_hand, dt);
     held[d].handle_before = devices[d]->reading().handle;
   }
+}
+
+void Simulation::Implementation::follow_heads() {
+  for (const auto& head : heads) head->follow(static_cast<double>(frame) * dt);
 }
 
 void Simulation::Implementation::take_stock() {

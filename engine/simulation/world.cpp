@@ -61,12 +61,14 @@ Simulation::Implementation::Implementation(Scene scene, const SimulationOptions&
       threads(options.threads),
       devices(scene.devices),
       held(scene.devices.size()),
+      heads(scene.heads),
       grasp_distance(scene.grasp_distance),
       clocks(scene.parameters.timestep) {
   for (const BodyDescription& body : scene.bodies)
     if (body.hybrid.value_or(parameters.hybrid) == Hybrid::exact) parameters.integrator = Integrator::implicit;
   double longest = 0;
   for (const auto& device : devices) longest = std::max(longest, device->duration());
+  for (const auto& head : heads) longest = std::max(longest, head->duration());
   const double duration = parameters.duration ? *parameters.duration : (longest > 0 ? longest : 1.0);
   frames_planned = static_cast<std::uint64_t>(std::llround(duration / dt));
 

@@ -89,6 +89,7 @@ struct Simulation::Implementation {
   std::vector<std::shared_ptr<Device>> devices;
   std::vector<Held> held;                     ///< per device
   std::unique_ptr<exact::ConvexStep> solver;  ///< null: no body's method is exact
+  std::vector<std::shared_ptr<wii::Head>> heads;
   double grasp_distance = 0.1;
   std::vector<Grasp> first_grasps;  ///< of the scene: taken in the first frame, when the handles have been sampled
   Ledger ledger;
@@ -135,6 +136,7 @@ struct Simulation::Implementation {
   void share_out(Link& link, std::size_t first_row);
   [[nodiscard]] Wrench felt(const Body& body, const StepWork& work) const;
   void render();
+  void follow_heads();
   void take_stock();
 
   // grasping.cpp

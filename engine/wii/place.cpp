@@ -53,7 +53,8 @@ Vector3d middle_of(const std::vector<Pose>& heads) {
 
 Parameters aimed_at(const Vector3d& p, const Vector3d& target) {
   const Vector3d way = target - p;
-  return {p.x(), p.y(), p.z(), pinned::atan2(way.x(), way.z()), pinned::atan2(way.y(), std::hypot(way.x(), way.z()))};
+  return {p.x(), p.y(), p.z(), pinned::atan2(way.x(), way.z()),
+          pinned::atan2(way.y(), std::sqrt(way.x() * way.x() + way.z() * way.z()))};
 }
 
 /// Moves along one coordinate after another while that helps, with steps that halve.

@@ -201,7 +201,7 @@ class Scaat final : public TrackerBase {
     constant.pixel_sigma = kRoundingPixels;
     if (settings().leds.count > 2) constant.yaw_sigma = constant.pitch_sigma = 1e-3;
     const Vector3d x_L = X_LH.rotation * Vector3d::UnitX();
-    const double across = std::max(std::hypot(x_L.x(), x_L.y()), 1e-3);
+    const double across = std::max(x_L.head<2>().norm(), 1e-3);
     return two_led_covariance(constant, pinhole(), spacing_, X_LH.position, x_L.x() / across, x_L.y() / across);
   }
 

@@ -113,21 +113,20 @@ double median_update_ns(Tracker& tracker, const std::vector<Sensed>& all) {
   return blocks[blocks.size() / 2];
 }
 
-template <typename Named>
-const Named& named(const std::vector<Named>& all, const std::string& name, const char* what) {
-  std::vector<std::string> names;
-  for (const Named& n : all) {
-    if (n.name == name) return n;
-    names.push_back(n.name);
-  }
-  fail(ErrorKind::input, "{} '{}' is not known; choose one of {}", what, name, fmt::join(names, ", "));
-}
-
 }  // namespace
 
 const std::vector<SensorCase>& sensor_cases() {
   static const std::vector<SensorCase> all = make_sensor_cases();
   return all;
+}
+
+const SensorCase& sensor_case(const std::string& name) {
+  std::vector<std::string> names;
+  for (const SensorCase& sensor : sensor_cases()) {
+    if (sensor.name == name) return sensor;
+    names.push_back(sensor.name);
+  }
+  fail(ErrorKind::input, "sensor '{}' is not known; choose one of {}", name, fmt::join(names, ", "));
 }
 
 ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
@@ -170,7 +169,7 @@ std::vector<ValidationRow> validate(const ValidationOptions& options) {
   for (const std::string& sensor : sensors)
     for (const std::string& path : paths)
       for (const std::string& tracker : trackers)
-        rows.push_back(validate_one(tracker, trajectory(path), named(sensor_cases(), sensor, "sensor"), options));
+        rows.push_back(validate_one(tracker, trajectory(path), sensor_case(sensor), options));
   return rows;
 }
 

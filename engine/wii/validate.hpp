@@ -16,6 +16,8 @@ struct SensorCase {
 };
 /// ideal, noisy, wiimote, low-sensitivity, low-battery, lamp.
 [[nodiscard]] const std::vector<SensorCase>& sensor_cases();
+/// Error(input) for a name that is not one of them.
+[[nodiscard]] const SensorCase& sensor_case(const std::string& name);
 
 /// Of the valid reports of one run, error = estimate - truth in L.
 struct ErrorFigures {

@@ -65,6 +65,11 @@ class Scenes(ProgramTest):
         s = self.scene("assembly", "--set", "model=mine.step", "--set", "part=pin", "--duration", "0.1")
         self.assertEqual(s["frames"], 100)
 
+    def test_head_tracking(self):
+        s = self.scene("head_tracking")
+        self.assertEqual(s["outcome"], "tracked")
+        self.assertGreater(s["measures"]["head_known"]["value"], 0.99)
+
     def test_golden_hashes(self):
         for name, options, golden in GOLDEN:
             summary = self.scene(name, *options)
@@ -74,6 +79,7 @@ class Scenes(ProgramTest):
 GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "8ac2d3491ac04a50"),
     ("peg_in_hole_step", ["--duration", "3"], "4c31489d103a2ff9"),
+    ("head_tracking", [], "f7ea8522f0bf0d8a"),
     ("slide", [], "a445a3bb3647986d"),
     ("stack", [], "61b2972e63c21265"),
 ]

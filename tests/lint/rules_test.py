@@ -56,7 +56,7 @@ MAY_READ_THE_CLOCK = {
 }
 
 # Folders whose numbers enter the state, and the files there that use the C library's functions for an error's text.
-IN_THE_STATE = ("base", "voxel", "contact", "constraint", "exact", "dynamics", "device", "robot", "simulation")
+IN_THE_STATE = ("base", "voxel", "contact", "constraint", "exact", "dynamics", "device", "robot", "simulation", "wii")
 OUT_OF_THE_STATE = {"engine/base/pinned_math.cpp", "engine/voxel/limits.cpp"}
 
 

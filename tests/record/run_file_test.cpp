@@ -28,6 +28,7 @@ TEST(RunFile, GivesBackEveryRowAndColumn) {
     EXPECT_EQ(a.units, b.units);
     EXPECT_EQ(a.description, b.description);
     EXPECT_EQ(a.enum_names, b.enum_names);
+    EXPECT_EQ(a.due, b.due);
   }
 }
 

@@ -112,6 +112,17 @@ TEST(StepIsQuiet, WhileBoxesFallOnEachOther) {
   }
 }
 
+TEST(StepIsQuiet, WhileHeadsAreTracked) {
+  Scene scene = scenes::pin_in_hole();
+  for (const char* tracker : {"geometric", "scaat", "vrpn-compatible"})
+    scene.heads.push_back(
+        std::make_shared<wii::Head>(tracker, wii::make_virtual_source({.name = tracker}), tracker, Pose{}));
+  Simulation simulation(std::move(scene), {});
+  const Quiet quiet = run_counted(simulation);
+  EXPECT_EQ(quiet.allocations, 0U);
+  EXPECT_EQ(quiet.locks, 0U);
+}
+
 // The alarm itself works.
 TEST(StepIsQuiet, NoticesAnAllocationALockAndAClock) {
 #ifdef __SANITIZE_ADDRESS__

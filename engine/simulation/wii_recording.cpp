@@ -1,13 +1,12 @@
-#include "engine/cli/wii_trace.hpp"
+#include "engine/simulation/wii_recording.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "engine/base/error.hpp"
-#include "engine/simulation/inputs.hpp"
 
-namespace verisim::cli {
+namespace verisim {
 namespace {
 
 constexpr std::array kChannelColumns = {"battery", "gx", "gy", "gz", "x1", "y1", "s1", "x2",
@@ -68,7 +67,7 @@ Pose pose_of(const std::string& file, const std::vector<double>& p) {
   return pose;
 }
 
-void read_header(const std::string& file, const Trace& trace, WiiRecording& recording) {
+void read_header(const std::string& file, const Trace& trace, wii::Recording& recording) {
   for (const auto& [key, text] : trace.extra) {
     if (key == "leds") recording.settings.leds = leds_of(file, text);
     if (key == "fov_deg") {
@@ -93,18 +92,18 @@ std::vector<std::string> wii_trace_columns() {
   return columns;
 }
 
-wii::TrackerSettings settings_of(const std::string& name, const Trace& trace) {
-  WiiRecording recording;
+wii::TrackerSettings wii_settings_of(const std::string& name, const Trace& trace) {
+  wii::Recording recording;
   read_header(name, trace, recording);
   return recording.settings;
 }
 
-WiiRecording read_wii_recording(const std::string& file, const TraceLimits& limits) {
-  return recording_of(file, parse_trace(file, Inputs::live(".", {file}).read(file), "wii", limits));
+wii::Recording read_wii_recording(Inputs& inputs, const std::string& name, const TraceLimits& limits) {
+  return wii_recording_of(name, parse_trace(name, inputs.read(name), "wii", limits));
 }
 
-WiiRecording recording_of(const std::string& file, const Trace& trace) {
-  WiiRecording recording;
+wii::Recording wii_recording_of(const std::string& file, const Trace& trace) {
+  wii::Recording recording;
   read_header(file, trace, recording);
 
   std::array<std::size_t, kChannelColumns.size()> channel{};
@@ -121,10 +120,9 @@ WiiRecording recording_of(const std::string& file, const Trace& trace) {
     truth = truth && pose[i] >= 0;
   }
   for (std::size_t row = 0; row < trace.rows(); ++row) {
-    WiiSample sample;
-    sample.t = trace.at(row, 0);
-    for (std::size_t i = 0; i < channel.size(); ++i) sample.channels[i] = trace.at(row, channel[i]);
-    recording.samples.push_back(sample);
+    recording.t.push_back(trace.at(row, 0));
+    wii::Channels& channels = recording.channels.emplace_back();
+    for (std::size_t i = 0; i < channel.size(); ++i) channels[i] = trace.at(row, channel[i]);
     if (!truth) continue;
     const auto at = [&](std::size_t i) { return trace.at(row, static_cast<std::size_t>(pose[i])); };
     recording.truth.push_back({{at(0), at(1), at(2)}, Quaterniond(at(6), at(3), at(4), at(5)).normalized()});
@@ -132,4 +130,4 @@ WiiRecording recording_of(const std::string& file, const Trace& trace) {
   return recording;
 }
 
-}  // namespace verisim::cli
+}  // namespace verisim

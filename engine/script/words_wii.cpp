@@ -1,0 +1,132 @@
+// WiiHead: a head that a Wii Remote watches beside the loop.
+#include <algorithm>
+
+#include "engine/script/script_state.hpp"
+#include "engine/script/values.hpp"
+#include "engine/simulation/wii_recording.hpp"
+
+namespace verisim::script {
+namespace {
+
+using HeadPointer = std::shared_ptr<HeadNode>;
+
+wii::LedLayout leds_at(lua_State* L, int index) {
+  const std::string what = "WiiHead: leds";
+  const auto count = lua_type(L, index) == LUA_TTABLE ? static_cast<int>(lua_objlen(L, index)) : 0;
+  if (count < 2 || count > wii::kLedsMax)
+    raise(L, "{} must be a list of 2 to {} places {{x, y, z}} on the head", what, wii::kLedsMax);
+  wii::LedLayout leds;
+  leds.count = count;
+  for (int i = 0; i < count; ++i) {
+    lua_rawgeti(L, index, i + 1);
+    leds.p_H[static_cast<std::size_t>(i)] = vector_at(L, lua_gettop(L), fmt::format("{}[{}]", what, i + 1));
+    lua_pop(L, 1);
+  }
+  return leds;
+}
+
+/// remote = "trace.csv", or remote = { motion =, sensor = }.
+void read_remote(lua_State* L, Fields& fields, HeadNode& head) {
+  if (!fields.push("remote")) return;
+  const int index = lua_gettop(L);
+  if (lua_type(L, index) == LUA_TSTRING) {
+    head.trace = text_at(L, index, "WiiHead: remote");
+  } else {
+    Fields remote(L, index, "WiiHead: remote");
+    head.virtual_remote.trajectory = remote.text("motion").value_or(head.virtual_remote.trajectory);
+    head.virtual_remote.sensor = remote.text("sensor").value_or(head.virtual_remote.sensor);
+    remote.finish(false);
+  }
+  lua_pop(L, 1);
+}
+
+void check_tracker(lua_State* L, const std::string& tracker) {
+  const std::vector<std::string>& known = wii::tracker_names();
+  if (tracker == "stereo") raise(L, "WiiHead: tracker 'stereo' needs two remotes, but a WiiHead has one");
+  if (std::find(known.begin(), known.end(), tracker) == known.end())
+    raise(L, "WiiHead: tracker '{}' is not known{}", tracker, suggestion(tracker, known));
+}
+
+int wii_head(lua_State* L) {
+  ScriptState& state = ScriptState::of(L);
+  if (state.simulation != nullptr) raise(L, "WiiHead: the simulation runs already; call it while the scene is built");
+  state.charge(L, 1000 + 100 * state.heads.size());
+  Fields fields(L, 1, "WiiHead");
+  auto head = std::make_shared<HeadNode>();
+  head->place = where(L);
+  head->name = fields.text("name").value_or("head");
+  for (const HeadPointer& other : state.heads)
+    if (other->name == head->name) raise(L, "WiiHead: there is a WiiHead '{}' already; give each a name=", head->name);
+  head->tracker = fields.text("tracker").value_or(head->tracker);
+  check_tracker(L, head->tracker);
+  read_remote(L, fields, *head);
+  if (head->tracker == "three-led") head->virtual_remote.leds = wii::LedLayout::triangle();
+  if (fields.push("leds")) {
+    head->virtual_remote.leds = leds_at(L, lua_gettop(L));
+    lua_pop(L, 1);
+  }
+  head->X_WL.position = fields.vector("position").value_or(Vector3d::Zero());
+  head->X_WL.rotation = fields.rotation("orientation").value_or(Quaterniond::Identity());
+  head->limits.max_gap = fields.positive("maxGap").value_or(head->limits.max_gap);
+  head->limits.allow_gaps = fields.boolean("allowGaps").value_or(false);
+  fields.finish(false);
+  state.heads.push_back(head);
+  push(L, head);
+  return 1;
+}
+
+/// Where the head is believed to be; where the remote stands, as long as nothing is known.
+Pose pose_of(const HeadNode& node) {
+  if (node.head == nullptr || !node.head->estimate().pose.position.allFinite()) return node.X_WL;
+  return node.head->world_pose();
+}
+
+int head_member(lua_State* L) {
+  const HeadPointer node = get<HeadPointer>(L, 1, "what a head's word is called on");
+  const std::string name = text_at(L, 2, "a head's member");
+  if (name == "name")
+    push_text(L, node->name);
+  else if (name == "pose")
+    push(L, pose_of(*node));
+  else if (name == "position")
+    push(L, Vector3d(pose_of(*node).position));
+  else if (name == "orientation")
+    push(L, Quaterniond(pose_of(*node).rotation));
+  else if (name == "matrix")
+    push_matrix_of(L, pose_of(*node));
+  else if (name == "valid")
+    lua_pushboolean(L, node->head != nullptr && node->head->estimate().valid ? 1 : 0);
+  else
+    raise(L, "a WiiHead has no '{}'{}", name,
+          suggestion(name, {"name", "pose", "position", "orientation", "matrix", "valid"}));
+  return 1;
+}
+
+int head_text(lua_State* L) {
+  push_text(L, fmt::format("WiiHead '{}'", get<HeadPointer>(L, 1, "a head")->name));
+  return 1;
+}
+
+}  // namespace
+
+void make_head(HeadNode& node, Inputs& inputs, std::uint64_t seed) {
+  std::unique_ptr<wii::ReportSource> source;
+  if (node.trace.empty()) {
+    node.virtual_remote.name = node.name;
+    node.virtual_remote.seed = seed;
+    source = wii::make_virtual_source(node.virtual_remote);
+  } else {
+    source = wii::make_recorded_source(read_wii_recording(inputs, node.trace, node.limits));
+  }
+  node.head = std::make_shared<wii::Head>(node.name, std::move(source), node.tracker, node.X_WL);
+}
+
+void add_wii_words(lua_State* L) {
+  push_metatable<HeadPointer>(L);
+  set_function<head_member>(L, "__index");
+  set_function<head_text>(L, "__tostring");
+  lua_pop(L, 1);
+  set_global<wii_head>(L, "WiiHead");
+}
+
+}  // namespace verisim::script
