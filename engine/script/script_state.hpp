@@ -17,6 +17,7 @@
 #include "engine/script/frame_actions.hpp"
 #include "engine/script/sandbox.hpp"
 #include "engine/script/scenario.hpp"
+#include "engine/wii/head.hpp"
 
 namespace verisim::script {
 

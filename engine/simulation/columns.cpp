@@ -4,6 +4,7 @@
 
 #include "engine/base/hash.hpp"
 #include "engine/simulation/world.hpp"
+#include "engine/wii/head.hpp"
 
 namespace verisim {
 namespace {

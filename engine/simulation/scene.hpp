@@ -12,9 +12,12 @@
 #include "engine/constraint/reduction.hpp"
 #include "engine/device/device.hpp"
 #include "engine/geometry/part.hpp"
-#include "engine/wii/head.hpp"
 
 namespace verisim {
+
+namespace wii {
+class Head;
+}
 
 enum class Integrator { semi_implicit, implicit };
 /// How much of the precise geometry acts; of two bodies that differ, the one that is listed first counts.

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/simulation/world.hpp"
+#include "engine/wii/head.hpp"
 
 namespace verisim {
 

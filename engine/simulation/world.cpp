@@ -7,6 +7,7 @@
 #include "engine/geometry/merged.hpp"
 #include "engine/voxel/association.hpp"
 #include "engine/voxel/voxelize.hpp"
+#include "engine/wii/head.hpp"
 
 namespace verisim {
 namespace {

@@ -41,7 +41,7 @@ struct VirtualSourceOptions {
   std::string name = "remote";         ///< of the random streams
   std::string trajectory = "natural";  ///< (trajectories.hpp)
   std::string sensor = "wiimote";      ///< (validate.hpp, sensor_cases)
-  LedLayout leds;
+  LedLayout leds = {};
   std::uint64_t seed = 1;
 };
 /// Goes on for ever; report 0 is at time 0 (jitter aside). Error(input) for names that are not known.

@@ -79,7 +79,7 @@ class Scenes(ProgramTest):
 GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "8ac2d3491ac04a50"),
     ("peg_in_hole_step", ["--duration", "3"], "4c31489d103a2ff9"),
-    ("head_tracking", [], "f7ea8522f0bf0d8a"),
+    ("head_tracking", [], "76d46232c8b61ff9"),
     ("slide", [], "a445a3bb3647986d"),
     ("stack", [], "61b2972e63c21265"),
 ]

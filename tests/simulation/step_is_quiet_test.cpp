@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "engine/wii/head.hpp"
 #include "tests/simulation/scenes.hpp"
 
 namespace {
