@@ -86,7 +86,8 @@ Misalignment of_planes(const Constraint& c, const Pose& X_AB) {
   Misalignment m;
   m.cosine = -a.direction.dot(b.direction);
   m.sine = a.direction.cross(b.direction).norm();
-  m.distance = m.offset = std::abs((b.point - a.point).dot(a.direction));
+  const Vector3d between = b.point - a.point;
+  m.distance = m.offset = std::min(std::abs(between.dot(a.direction)), std::abs(between.dot(b.direction)));
   return m;
 }
 

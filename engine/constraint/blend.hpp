@@ -12,7 +12,8 @@
 // to the present one is wanted: Gauss-Newton steps  xi = -(J^T J + lambda 1)^-1 J^T r  from the present pose, turns
 // measured as lengths by `length`. Where constraints contradict each other (figures 8.1 and 8.2 of the dissertation) it
 // is their least-squares compromise, each weighted by its alignment. Tapers are solved as axes: they may leave their
-// seat.
+// seat. A constraint that engages is solved for at once, however badly it is aligned: with more than one, the target
+// and so the force may jump when another engages. That is this method's nature, not an error of this solver.
 //
 // Body coordinates of A throughout. Nothing allocates. About 1 us for one constraint, 0.2 us more for each further one.
 #pragma once

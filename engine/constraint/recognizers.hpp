@@ -60,8 +60,9 @@ inline constexpr std::array<std::string_view, 10> kDrawing = {
 };
 
 namespace recognizing {
+template <typename List>
 consteval bool is_as_drawn() {
-  constexpr auto drawing = drawing_of<Recognizers, Entity>();
+  constexpr auto drawing = drawing_of<List, Entity>();
   for (std::size_t i = 0; i < drawing.size(); ++i) {
     for (std::size_t j = 0; j < drawing.size(); ++j) {
       if (drawing[i][j] != kDrawing[i][2 * j]) return false;
@@ -70,6 +71,6 @@ consteval bool is_as_drawn() {
   return true;
 }
 }  // namespace recognizing
-static_assert(recognizing::is_as_drawn(), "the drawing above does not show the list of recognizers");
+static_assert(recognizing::is_as_drawn<Recognizers>(), "the drawing above does not show the list of recognizers");
 
 }  // namespace verisim

@@ -1,0 +1,251 @@
+// The hybrid method between two bodies, contact by contact.
+#include "engine/constraint/constraint_link.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/constraint/parts.hpp"
+#include "tests/contact/allocations.hpp"
+#include "tests/support/random_inputs.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace verisim {
+namespace {
+
+namespace block = test::block_set;
+namespace pin = test::pin_set;
+using test::tolerance;
+
+/// Contacts as rows, given to the link as columns.
+struct Contacts {
+  std::vector<float> x, y, z, fx, fy, fz;
+  std::vector<FeatureSetId> a, b;
+  Vector3d origin = Vector3d(-0.3, -0.2, -0.1);
+
+  void add(const Vector3d& point, const Vector3d& force, FeatureSetId set_a, FeatureSetId set_b) {
+    const Eigen::Vector3f p = (point - origin).cast<float>();
+    const Eigen::Vector3f f = force.cast<float>();
+    x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
+    fx.push_back(f.x()), fy.push_back(f.y()), fz.push_back(f.z());
+    a.push_back(set_a), b.push_back(set_b);
+  }
+  ContactColumns columns() {
+    return {static_cast<std::uint32_t>(x.size()),
+            x.data(),
+            y.data(),
+            z.data(),
+            fx.data(),
+            fy.data(),
+            fz.data(),
+            a.data(),
+            b.data(),
+            origin};
+  }
+  [[nodiscard]] Vector3d force(std::size_t i) const { return Vector3d(fx[i], fy[i], fz[i]); }
+  [[nodiscard]] Vector3d point(std::size_t i) const { return origin + Vector3d(x[i], y[i], z[i]); }
+};
+
+Pose at(double x, double y, double z) {
+  return {{x, y, z}, Quaterniond::Identity()};
+}
+
+// Forces are in float: 10 N to 1e-6 N.
+constexpr double kFloat = 2e-6;
+
+// A pin inside its clearance slides and turns freely: what is left of any force is radial.
+TEST(ConstraintLink, LetsAPinSlideAndTurn) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Contacts contacts;
+  contacts.add({0.075, 0, 0.02}, {-3, 2, 5}, block::wall, pin::side);
+  contacts.add({0, -0.075, 0.1}, {1, 4, 7}, block::rim, pin::side);
+  link.begin_frame(at(0.003, 0, 0));
+  const RestoreResult r = link.restore_contacts(contacts.columns());
+  EXPECT_LE((contacts.force(0) - Vector3d(-3, 0, 0)).norm(), tolerance(kFloat));
+  EXPECT_LE((contacts.force(1) - Vector3d(0, 4, 0)).norm(), tolerance(kFloat));
+  EXPECT_EQ(r.kind, ConstraintKind::cylindrical);
+  EXPECT_EQ(r.alpha, 1);
+  EXPECT_EQ(r.misses, 2U);
+  EXPECT_EQ(r.hits, 0U);
+  EXPECT_EQ(r.restored, 2U);
+}
+
+// The rim, both ways: a pin that stands beside the hole is held by the top; inside the clearance it is not, though its
+// edge still passes the rim; a collar that sits on the rim is held by the top and by the wall at once.
+TEST(ConstraintLink, KnowsWhatHoldsAtARim) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets straight = test::pin();
+  const EntitySets collared = test::collared_pin();
+  const Vector3d push(-3, 2, 5);
+
+  ConstraintLink link(a, straight);
+  Contacts beside;
+  beside.add({0.075, 0, 0.1}, push, block::rim, pin::edge);
+  link.begin_frame(at(0.020, 0, 0.299));  // 15 mm too far to the side, its lower end 1 mm deep in the top
+  (void)link.restore_contacts(beside.columns());
+  EXPECT_LE((beside.force(0) - Vector3d(0, 0, 5)).norm(), tolerance(kFloat));
+
+  Contacts inside;
+  inside.add({0.075, 0, 0.1}, push, block::rim, pin::edge);
+  link.begin_frame(at(0.003, 0, 0.299));
+  (void)link.restore_contacts(inside.columns());
+  EXPECT_LE((inside.force(0) - Vector3d(-3, 0, 0)).norm(), tolerance(kFloat));
+
+  ConstraintLink hanging(a, collared);
+  Contacts seated;
+  seated.add({0.075, 0, 0.1}, push, block::rim, pin::edge);
+  hanging.begin_frame(at(0.003, 0, 0.099));
+  (void)hanging.restore_contacts(seated.columns());
+  EXPECT_LE((seated.force(0) - Vector3d(-3, 0, 5)).norm(), tolerance(kFloat));
+}
+
+// Same contacts, by the dissertation's rule: the rim's forces stay as they came.
+TEST(ConstraintLink, ByTheDissertationsRuleLeavesRimsAlone) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b, {.reduction = Reduction::exactly_one});
+  Contacts contacts;
+  contacts.add({0.075, 0, 0.1}, {-3, 2, 5}, block::rim, pin::side);
+  contacts.add({0.075, 0, 0.05}, {-3, 2, 5}, block::wall, pin::side);
+  link.begin_frame(Pose());
+  (void)link.restore_contacts(contacts.columns());
+  EXPECT_EQ(contacts.force(0), Vector3d(-3, 2, 5));
+  EXPECT_LE((contacts.force(1) - Vector3d(-3, 0, 0)).norm(), tolerance(kFloat));
+}
+
+TEST(ConstraintLink, LeavesTheVoxelAnswerWhereNothingIsKnown) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Contacts contacts;
+  contacts.add({0.075, 0, 0}, {-3, 2, 5}, block::nothing, pin::side);
+  contacts.add({0.075, 0, 0}, {-3, 2, 5}, block::wall, pin::end);
+  contacts.add({0.075, 0, 0}, {-3, 2, 5}, 4711, pin::end);
+  link.begin_frame(Pose());
+  const RestoreResult r = link.restore_contacts(contacts.columns());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(contacts.force(i), Vector3d(-3, 2, 5));
+  EXPECT_EQ(r.kind, ConstraintKind::none);
+  EXPECT_EQ(r.restored, 0U);
+}
+
+TEST(ConstraintLink, LeavesForcesAloneInAPoseThatIsNotFinite) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Contacts contacts;
+  contacts.add({0.075, 0, 0}, {-3, 2, 5}, block::wall, pin::side);
+  link.begin_frame(at(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+  const RestoreResult r = link.restore_contacts(contacts.columns());
+  EXPECT_EQ(contacts.force(0), Vector3d(-3, 2, 5));
+  EXPECT_EQ(r.alpha, 0);
+  link.begin_frame(Pose());  // and recovers
+  EXPECT_EQ(link.restore_contacts(contacts.columns()).alpha, 1);
+}
+
+TEST(ConstraintLink, LooksUpWithoutTouchingForces) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Contacts contacts;
+  contacts.add({0.075, 0, 0}, {-3, 2, 5}, block::wall, pin::side);
+  contacts.add({0.074, 0, 0}, {-3, 2, 5}, block::wall, pin::side);
+  link.begin_frame(Pose());
+  ContactColumns columns = contacts.columns();
+  columns.fx = columns.fy = columns.fz = nullptr;
+  EXPECT_EQ(link.look_up_contacts(columns).kind, ConstraintKind::cylindrical);
+  ASSERT_EQ(link.engaged().size(), 1U);
+  EXPECT_EQ(link.engaged()[0].contacts, 2U);
+  EXPECT_EQ(link.engaged()[0].alpha, 1);
+  link.begin_frame(Pose());
+  EXPECT_TRUE(link.engaged().empty());
+}
+
+/// A heap of contacts on all pairs of sets.
+Contacts heap(std::uint64_t seed, int count) {
+  test::Inputs in(seed);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const auto set_a = static_cast<FeatureSetId>(in.between(0, 3.999));
+    const auto set_b = static_cast<FeatureSetId>(in.between(0, 3.999));
+    contacts.add(in.vector(0.1), in.vector(10), set_a, set_b);
+  }
+  return contacts;
+}
+
+// Plain against fast: every contact by itself through recognition, alignment and restoration.
+TEST(ConstraintLink, InABatchDoesWhatItDoesToEachContact) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  for (const std::uint64_t seed : test::seeds(50)) {
+    SCOPED_TRACE(seed);
+    Contacts all = heap(seed, 100);
+    const Contacts before = all;
+    const Pose X = test::Inputs(seed).pose(0.003);
+    ConstraintLink link(a, b);
+    link.begin_frame(X);
+    (void)link.restore_contacts(all.columns());
+    for (std::size_t i = 0; i < all.x.size(); ++i) {
+      Contacts one;
+      one.add(before.point(i), before.force(i), before.a[i], before.b[i]);
+      ConstraintLink fresh(a, b);
+      fresh.begin_frame(X);
+      (void)fresh.restore_contacts(one.columns());
+      EXPECT_LE((all.force(i) - one.force(0)).norm(), tolerance(kFloat));
+      EXPECT_LE(all.force(i).norm(), before.force(i).norm() * (1 + tolerance(1e-6)));
+    }
+  }
+}
+
+// Section 6.5: hits and misses add up to collisions; a second frame misses nothing.
+TEST(ConstraintLink, CountsEveryCollision) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Contacts contacts = heap(1, 500);
+  link.begin_frame(Pose());
+  const RestoreResult first = link.restore_contacts(contacts.columns());
+  EXPECT_EQ(first.hits + first.misses, 500U);
+  EXPECT_EQ(first.misses, 16U);
+  link.begin_frame(at(0, 0, 0.01));
+  const RestoreResult second = link.restore_contacts(contacts.columns());
+  EXPECT_EQ(second.misses, 0U);
+  EXPECT_EQ(second.hits, 500U);
+  EXPECT_EQ(link.counts().hits + link.counts().misses(), 1000U);
+}
+
+TEST(ConstraintLink, AllocatesNothingAfterItIsMade) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Contacts contacts = heap(2, 500);
+  const std::uint64_t before = allocations;
+  for (int frame = 0; frame < 10; ++frame) {
+    link.begin_frame(at(0.001 * frame, 0, 0));
+    (void)link.restore_contacts(contacts.columns());
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+// As a pin moves from beside its hole into it, over the hand-over, no force jumps: steps of 1 um change a force of 6.2
+// N by at most what alpha's slope of 1 / 4.5 mm allows, twice.
+TEST(ConstraintLink, ChangesForcesContinuouslyAtTheRim) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintLink link(a, b);
+  Vector3d before = Vector3d::Zero();
+  for (int i = 0; i <= 15000; ++i) {
+    Contacts contacts;
+    contacts.add({0.075, 0, 0.1}, {-3, 2, 5}, block::rim, pin::edge);
+    link.begin_frame({{0.015 - 1e-6 * i, 0, 0.299}, rotation_from_vector({0.01, 0.02, 0})});
+    (void)link.restore_contacts(contacts.columns());
+    const double step = i == 0 ? 0 : (contacts.force(0) - before).norm();
+    ASSERT_LE(step, tolerance(2 * 6.2e-6 / 0.0045)) << i;
+    before = contacts.force(0);
+  }
+}
+
+}  // namespace
+}  // namespace verisim

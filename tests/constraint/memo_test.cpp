@@ -1,0 +1,163 @@
+// The memo: what is recognized once is not recognized again, and what finds no room is still right.
+#include "engine/constraint/memo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/constraint/parts.hpp"
+#include "tests/contact/allocations.hpp"
+#include "tests/support/random_inputs.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace verisim {
+namespace {
+
+namespace block = test::block_set;
+namespace pin = test::pin_set;
+
+TEST(PairMap, AnswersAsAStandardMapDoes) {
+  for (const std::uint64_t seed : test::seeds(20)) {
+    SCOPED_TRACE(seed);
+    test::Inputs in(seed);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> plain;
+    PairMap fast(200);
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+      const auto a = static_cast<std::uint32_t>(in.between(0, 15));
+      const auto b = static_cast<std::uint32_t>(in.between(0, 15)) << (i % 3 == 0 ? 16U : 0U);
+      const auto known = plain.find({a, b});
+      ASSERT_EQ(fast.find(a, b), known == plain.end() ? PairMap::kAbsent : known->second);
+      if (known != plain.end() || fast.size() == fast.capacity()) continue;
+      plain[{a, b}] = i;
+      fast.insert(a, b, i);
+    }
+    EXPECT_EQ(fast.size(), plain.size());
+  }
+}
+
+TEST(ConstraintMemo, RecognizesEachPairOfSetsOnce) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  for (int round = 0; round < 1000; ++round) {
+    (void)memo.look_up(block::wall, pin::side);  // a constraint
+    (void)memo.look_up(block::wall, pin::end);   // none: an end face has no business with a wall
+    (void)memo.look_up(block::nothing, pin::side);
+  }
+  EXPECT_EQ(memo.counts().misses_constraint, 1U);
+  EXPECT_EQ(memo.counts().misses_null, 2U);
+  EXPECT_EQ(memo.counts().hits, 2997U);
+  EXPECT_EQ(memo.counts().recognitions, 2U);
+  EXPECT_EQ(memo.counts().overflows, 0U);
+}
+
+TEST(ConstraintMemo, SharesAConstraintBetweenPairsOfSets) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  const Candidates wall = memo.candidates(memo.look_up(block::wall, pin::side));
+  const Candidates rim = memo.candidates(memo.look_up(block::rim, pin::side));
+  ASSERT_EQ(wall.count, 1);
+  EXPECT_EQ(rim.constraint[0], wall.constraint[0]);
+}
+
+// Wall x side, rim x side and the side on the top: the dissertation's rule finds three and says none.
+TEST(ConstraintMemo, AtARimFindsNothingByTheDissertationsRule) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::exactly_one, {});
+  EXPECT_EQ(memo.candidates(memo.look_up(block::wall, pin::side)).count, 1);
+  EXPECT_EQ(memo.candidates(memo.look_up(block::rim, pin::side)).count, 0);
+}
+
+// By the common freedom: wall and rim are one constraint, about one axis; the side along the top stays a candidate.
+TEST(ConstraintMemo, AtARimMergesWallAndRim) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  const Candidates rim = memo.candidates(memo.look_up(block::rim, pin::side));
+  ASSERT_EQ(rim.count, 2);
+  EXPECT_EQ(memo.constraint(rim.constraint[0]).kind, ConstraintKind::cylindrical);
+  EXPECT_EQ(memo.constraint(rim.constraint[1]).kind, ConstraintKind::other);
+}
+
+// End on top hands over to the fit if both rims are convex, and does not for a collar.
+TEST(ConstraintMemo, HandsOverBetweenConvexRimsOnly) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets straight = test::pin();
+  const EntitySets collared = test::collared_pin();
+  for (const auto& [b, expected] : {std::pair(&straight, true), std::pair(&collared, false)}) {
+    ConstraintMemo memo(a, *b, Reduction::common_freedom, {});
+    const Candidates found = memo.candidates(memo.look_up(block::rim, pin::edge));
+    bool yields = false;
+    for (std::size_t i = 0; i < found.count; ++i) {
+      if (memo.constraint(found.constraint[i]).kind == ConstraintKind::planar)
+        yields = yields || found.yields_to[i] != 0;
+    }
+    EXPECT_EQ(yields, expected);
+  }
+}
+
+// A full memo is slow, not wrong.
+TEST(ConstraintMemo, WithoutRoomAnswersTheSame) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo roomy(a, b, Reduction::common_freedom, {});
+  ConstraintMemo tight(a, b, Reduction::common_freedom, {}, {.pairs = 2, .constraints = 4096});
+  for (int round = 0; round < 3; ++round) {
+    for (FeatureSetId i = 0; i < a.size(); ++i) {
+      for (FeatureSetId j = 0; j < b.size(); ++j) {
+        const Candidates wanted = roomy.candidates(roomy.look_up(i, j));
+        const Candidates found = tight.candidates(tight.look_up(i, j));
+        ASSERT_EQ(found.count, wanted.count);
+        for (std::size_t k = 0; k < found.count; ++k) {
+          EXPECT_EQ(tight.constraint(found.constraint[k]).kind, roomy.constraint(wanted.constraint[k]).kind);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(roomy.counts().overflows, 0U);
+  EXPECT_EQ(tight.counts().overflows, 3U * (16 - 2));
+}
+
+TEST(ConstraintMemo, WithoutRoomForConstraintsFindsNoneAndSaysSo) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {}, {.pairs = 100, .constraints = 0});
+  EXPECT_EQ(memo.candidates(memo.look_up(block::wall, pin::side)).count, 0);
+  EXPECT_GT(memo.counts().overflows, 0U);
+}
+
+TEST(ConstraintMemo, AllocatesNothingAfterItIsMade) {
+  const EntitySets a = test::block_with_hole();
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  const std::uint64_t before = allocations;
+  for (FeatureSetId i = 0; i < a.size(); ++i) {
+    for (FeatureSetId j = 0; j < b.size(); ++j) (void)memo.look_up(i, j);
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+TEST(EntitySets, RefusesAnEntityThatThePartDoesNotHave) {
+  const std::vector<std::vector<std::uint32_t>> sets = {{}, {0, 1}};
+  test::expect_refused([&] { return EntitySets(std::vector<Entity>{test::plane(test::kZ)}, sets); }, "entity 1");
+}
+
+TEST(EntitySets, TakesEveryIdAndNoMore) {
+  std::vector<std::vector<std::uint32_t>> sets(65536, std::vector<std::uint32_t>{0});
+  const std::vector<Entity> one = {test::plane(test::kZ)};
+  EXPECT_EQ(EntitySets(one, sets).set(65535).size(), 1U);
+  sets.emplace_back();
+  test::expect_refused([&] { return EntitySets(one, sets); }, "65537");
+}
+
+TEST(EntitySets, OfNothingHoldsTheEmptySet) {
+  const EntitySets none;
+  EXPECT_EQ(none.size(), 1U);
+  EXPECT_TRUE(none.set(0).empty());
+  EXPECT_TRUE(none.set(7).empty());
+}
+
+}  // namespace
+}  // namespace verisim
