@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -78,8 +77,8 @@ void recognize_all(const Set& first, const Set& second, const Tolerances& tolera
 /// One side of a result, filled from whatever the shape has, without a question asked.
 template <typename Shape>
 void fill(ConstraintSide& side, const Bounded<Shape>& bounded) {
-  static_assert(std::is_trivially_destructible_v<Bounded<Shape>> && sizeof(Bounded<Shape>) >= sizeof(ConstraintSide));
-  std::memcpy(static_cast<void*>(&side), &bounded, sizeof(ConstraintSide));
+  side.point = side.direction = Vector3d::Constant(bounded.half_length);
+  side.radius = side.half_length = side.detail = bounded.tangent;
 }
 
 /// What dispatch and the result cost by themselves: std::visit, a full Constraint by value.

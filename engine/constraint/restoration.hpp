@@ -57,10 +57,10 @@ struct ActiveConstraint {
 /// n(x), not normalised; zero where there is none. About 20 flops, cones and rings one square root more.
 [[nodiscard]] inline Vector3d normal_at(const ActiveConstraint& c, const Vector3d& x) {
   if (c.field == NormalField::constant) return c.direction;
-  const Vector3d from_point = x - c.point;
+  Vector3d from_point = x - c.point;
   if (c.field == NormalField::about_point) return from_point;
   const double height = c.direction.dot(from_point);
-  const Vector3d r = from_point - height * c.direction;  // eq. 8.3 and 8.4
+  Vector3d r = from_point - height * c.direction;  // eq. 8.3 and 8.4
   if (c.field == NormalField::about_line) return r;
   const double distance = std::sqrt(r.squaredNorm());
   if (distance == 0) return Vector3d::Zero();
