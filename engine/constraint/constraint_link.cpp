@@ -11,11 +11,46 @@ constexpr double kAlphaLeast = 1e-9;  ///< below, a constraint changes no bit of
 Vector3d point_of(const ContactColumns& c, std::uint32_t i) {
   return c.origin + Vector3d(c.x[i], c.y[i], c.z[i]);
 }
-
-void restore_one(const ContactColumns& c, std::uint32_t i, const Vector3d& f) {
+Vector3d force_of(const ContactColumns& c, std::uint32_t i) {
+  return Vector3d(c.fx[i], c.fy[i], c.fz[i]);
+}
+void set_force(const ContactColumns& c, std::uint32_t i, const Vector3d& f) {
   c.fx[i] = static_cast<float>(f.x());
   c.fy[i] = static_cast<float>(f.y());
   c.fz[i] = static_cast<float>(f.z());
+}
+
+struct Run {
+  std::uint32_t begin, end;
+};
+
+/// restore() of restoration.hpp over a run of contacts, for one kind of field: nothing is decided inside the loop.
+template <NormalField field, bool pushes_only>
+void restore_run(const ContactColumns& c, Run run, ActiveConstraint active) {
+  active.field = field;
+  active.point -= c.origin;
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    const Vector3d n = normal_at(active, Vector3d(c.x[i], c.y[i], c.z[i]));
+    set_force(c, i, restore_along(n, force_of(c, i), active.alpha, pushes_only));
+  }
+}
+
+void restore_run(const ContactColumns& c, Run run, const ActiveConstraint& active) {
+  const auto by_sense = [&]<NormalField field>() {
+    return active.pushes_only ? restore_run<field, true>(c, run, active) : restore_run<field, false>(c, run, active);
+  };
+  switch (active.field) {
+    case NormalField::constant:
+      return by_sense.operator()<NormalField::constant>();
+    case NormalField::about_line:
+      return by_sense.operator()<NormalField::about_line>();
+    case NormalField::about_point:
+      return by_sense.operator()<NormalField::about_point>();
+    case NormalField::about_cone:
+      return by_sense.operator()<NormalField::about_cone>();
+    case NormalField::about_ring:
+      return by_sense.operator()<NormalField::about_ring>();
+  }
 }
 
 }  // namespace
@@ -90,6 +125,18 @@ void ConstraintLink::count_engaged(const Holding& h, std::uint32_t contacts) {
   }
 }
 
+void ConstraintLink::restore_under(const Holding& h, const ContactColumns& c, std::uint32_t begin, std::uint32_t end) {
+  if (h.count == 1) {
+    ActiveConstraint only = *h.active[0];
+    only.alpha = h.alpha[0];
+    return restore_run(c, {begin, end}, only);
+  }
+  for (std::uint32_t i = begin; i < end; ++i) {
+    set_force(c, i,
+              restore_common({h.active.data(), h.count}, {h.alpha.data(), h.count}, point_of(c, i), force_of(c, i)));
+  }
+}
+
 /// Neighbouring contacts mostly lie in voxels of the same sets: a run of equal pairs is looked up once, and counted as
 /// the hits that it is.
 template <bool restore_forces>
@@ -111,21 +158,7 @@ RestoreResult ConstraintLink::walk(const ContactColumns& c) {
       result.alpha = h.alpha[k];
       result.kind = h.active[k]->kind;
     }
-    if constexpr (restore_forces) {
-      if (h.count == 1) {
-        ActiveConstraint only = *h.active[0];
-        only.alpha = h.alpha[0];
-        for (std::uint32_t i = begin; i < end; ++i) {
-          restore_one(c, i, restore(only, point_of(c, i), Vector3d(c.fx[i], c.fy[i], c.fz[i])));
-        }
-      } else {
-        for (std::uint32_t i = begin; i < end; ++i) {
-          restore_one(c, i,
-                      restore_common({h.active.data(), h.count}, {h.alpha.data(), h.count}, point_of(c, i),
-                                     Vector3d(c.fx[i], c.fy[i], c.fz[i])));
-        }
-      }
-    }
+    if constexpr (restore_forces) restore_under(h, c, begin, end);
   }
   result.misses = static_cast<std::uint32_t>(memo_.counts().misses() - misses_before);
   result.hits = c.size - result.misses;

@@ -98,6 +98,7 @@ class ConstraintLink {
   const Holding& holding(std::uint32_t candidates);
   void fill(Holding& h, const Candidates& found);
   const ActiveConstraint& active(std::uint32_t constraint);
+  static void restore_under(const Holding& h, const ContactColumns& contacts, std::uint32_t begin, std::uint32_t end);
   void count_engaged(const Holding& h, std::uint32_t contacts);
 
   ConstraintOptions options_;

@@ -20,52 +20,64 @@ bool is_convex(const ConstraintSide& plane, const ConstraintSide& round) {
   return (round.point - plane.point).dot(plane.direction) < 0;
 }
 
-/// One normal at one contact, prepared: orthogonal parts are taken of it below.
+/// One normal at one contact, prepared.
 struct Held {
   Vector3d n;  ///< unit
   double alpha;
   bool pushes_only;
 };
 
-/// Sum over all subsets of held[i], held[i + 1] … of weight x what the span of the subset, together with `basis`,
-/// leaves of f. `rest` is what is left so far; `changed`: the subset is not empty.
-class FreePart {
- public:
-  FreePart(std::span<const Held> held) : held_(held) {}
-  Vector3d expect(std::size_t i, std::size_t basis, const Vector3d& rest, double weight) {
-    if (weight == 0) return Vector3d::Zero();
-    if (i == held_.size()) {
-      if (!any_) return Vector3d::Zero();
-      return weight * rest;
-    }
-    const Held& h = held_[i];
-    Vector3d total = expect(i + 1, basis, rest, weight * (1 - h.alpha));
+/// What is held along the way through the subsets: unit normals, each square to those before, and how much of each
+/// counts: 0 where it only repeats another.
+struct Basis {
+  std::array<Vector3d, kHoldingMax> m;
+  std::array<double, kHoldingMax> own;
+};
+
+/// Sum over all subsets of held[i], held[i + 1] … of weight x what is left of f when the span of the subset, and of the
+/// `size` normals in the basis, is taken away. `rest` is what is left so far. The empty subset adds nothing. The
+/// recursion is unrolled by the compiler: numbers of constraints are template arguments.
+template <std::size_t i, std::size_t size, std::size_t count>
+inline Vector3d free_part(const std::array<Held, count>& held, Basis& basis, const Vector3d& rest, double weight) {
+  if constexpr (i == count) {
+    if constexpr (size == 0) return Vector3d::Zero();
+    return weight * rest;
+  } else {
+    const Held& h = held[i];
+    Vector3d total = Vector3d::Zero();
+    if (h.alpha < 1) total = free_part<i + 1, size>(held, basis, rest, weight * (1 - h.alpha));
     Vector3d m = h.n;
-    for (std::size_t k = 0; k < basis; ++k) m -= own_[k] * m.dot(basis_[k]) * basis_[k];
+    for (std::size_t k = 0; k < size; ++k) m -= basis.own[k] * m.dot(basis.m[k]) * basis.m[k];
     const double square = m.squaredNorm();  // sin^2 of the angle between n and what is held already
     const double own = std::clamp((square - kSquareLow) / (kSquareHigh - kSquareLow), 0.0, 1.0);
     Vector3d left = rest;
-    std::size_t basis_with = basis;
     if (own > 0) {
       m /= std::sqrt(square);
       const double along = rest.dot(m);
       if (!h.pushes_only || along < 0) left -= own * along * m;
-      own_[basis_with] = own;
-      basis_[basis_with++] = m;
     }
-    const bool before = any_;
-    any_ = true;
-    total += expect(i + 1, basis_with, left, weight * h.alpha);
-    any_ = before;
-    return total;
+    basis.m[size] = m;
+    basis.own[size] = own;
+    return total + free_part<i + 1, size + 1>(held, basis, left, weight * h.alpha);
   }
+}
 
- private:
-  std::span<const Held> held_;
-  std::array<Vector3d, kHoldingMax> basis_;   ///< orthogonal, unit
-  std::array<double, kHoldingMax> own_ = {};  ///< how much of each counts: 0 where it only repeats another
-  bool any_ = false;
-};
+/// One constraint that has a normal at x, or none.
+bool hold(const ActiveConstraint& c, double alpha, const Vector3d& x, Held& held) {
+  const Vector3d n = normal_at(c, x);
+  const double square = n.squaredNorm();
+  if (square == 0) return false;
+  held = {c.field == NormalField::constant ? n : Vector3d(n / std::sqrt(square)), alpha, c.pushes_only};
+  return true;
+}
+
+template <std::size_t count>
+Vector3d restore_held(const std::array<Held, kHoldingMax>& all, const Vector3d& f) {
+  std::array<Held, count> held;
+  std::copy_n(all.begin(), count, held.begin());
+  Basis basis;
+  return f - free_part<0, 0>(held, basis, f, 1.0);
+}
 
 }  // namespace
 
@@ -86,12 +98,17 @@ Vector3d restore_common(std::span<const ActiveConstraint* const> holding, std::s
   VERISIM_ASSERT(holding.size() <= kHoldingMax);
   std::array<Held, kHoldingMax> held;
   std::size_t n = 0;
-  for (std::size_t i = 0; i < holding.size(); ++i) {
-    const Vector3d normal = normal_at(*holding[i], x);
-    const double length = normal.norm();
-    if (length > 0) held[n++] = {normal / length, alpha[i], holding[i]->pushes_only};
+  for (std::size_t i = 0; i < holding.size(); ++i) n += hold(*holding[i], alpha[i], x, held[n]) ? 1U : 0U;
+  switch (n) {
+    case 0:
+      return f;
+    case 1:
+      return restore_held<1>(held, f);
+    case 2:
+      return restore_held<2>(held, f);
+    default:
+      return restore_held<3>(held, f);
   }
-  return f - FreePart({held.data(), n}).expect(0, 0, f, 1);
 }
 
 }  // namespace verisim
