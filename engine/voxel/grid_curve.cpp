@@ -141,7 +141,7 @@ void GridCurve::cross(const Vector3d& normal, double offset, double epsilon, std
 std::array<double, 2> GridCurve::extent(const Vector3d& normal) const {
   if (is_arc_) {
     const double middle = normal.dot(center_);
-    const double amplitude = std::hypot(normal.dot(a_), normal.dot(b_));
+    const double amplitude = Eigen::Vector2d(normal.dot(a_), normal.dot(b_)).norm();
     return {middle - amplitude, middle + amplitude};
   }
   std::array<double, 2> result = {normal.dot(points_[0]), normal.dot(points_[0])};

@@ -273,7 +273,7 @@ bool GridSurface::is_one_sheet(const Vector3d& center, double distance) const {
 }
 
 Vector3d GridSurface::projected(const Vector3d& local) const {
-  const Vector3d foot = local - value(local) * gradient(local);
+  Vector3d foot = local - value(local) * gradient(local);
   if (shape_ == Shape::cone && foot.z() < axis_meeting()) return {0, 0, axis_meeting()};
   if (shape_ == Shape::torus && std::abs(value(foot)) > kOffSurface) {  // beyond the axis, where it meets itself
     return {0, 0, local.z() < 0 ? -axis_meeting() : axis_meeting()};

@@ -14,6 +14,10 @@ double pseudo_angle(double x, double y) {
   return y < 0 ? x / sum - 1 : 1 - x / sum;
 }
 
+double distance_from_axis(const Vector3d& p) {
+  return p.head<2>().norm();
+}
+
 double cross(const Vector3d& a, const Vector3d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -49,7 +53,7 @@ double FaceTrim::height(const Vector3d& local) const {
     case GridSurface::Shape::plane:
       return local.y();
     case GridSurface::Shape::torus:
-      return pseudo_angle(std::hypot(local.x(), local.y()) - surface_.major_radius(), local.z());
+      return pseudo_angle(distance_from_axis(local) - surface_.major_radius(), local.z());
     default:
       return local.z();
   }
@@ -58,13 +62,13 @@ double FaceTrim::height(const Vector3d& local) const {
 /// A torus has two circles at one height.
 bool FaceTrim::same_branch(const Vector3d& a, const Vector3d& b) const {
   if (surface_.shape() != GridSurface::Shape::torus) return true;
-  const auto is_outer = [&](const Vector3d& p) { return std::hypot(p.x(), p.y()) > surface_.major_radius(); };
+  const auto is_outer = [&](const Vector3d& p) { return distance_from_axis(p) > surface_.major_radius(); };
   return is_outer(a) == is_outer(b);
 }
 
 bool FaceTrim::set_reference(const Vector3d& local) {
   const bool flat = surface_.shape() == GridSurface::Shape::plane;
-  const double rho = std::hypot(local.x(), local.y());
+  const double rho = distance_from_axis(local);
   if (!flat && rho <= epsilon_) return false;
   const Vector3d outward = flat ? Vector3d(0, 0, 0) : Vector3d(local.x() / rho, local.y() / rho, 0);
   const Vector3d normal = flat ? Vector3d(Vector3d::UnitX()) : Vector3d(-outward.y(), outward.x(), 0);
