@@ -181,14 +181,15 @@ class PartTaker {
 
 }  // namespace
 
-bool ExactEdge::speaks_for(const Vector3d& p) const {
+bool ExactEdge::speaks_for(const Vector3d& p, double distance) const {
+  constexpr double kLittle = 5e-5;  // m: deeper than contacts go
   if (extent == Extent::all) return true;
   const Vector3d d = p - middle;
   const double a = along.dot(d);
   const double b = on.dot(d);
   const bool is_line = extent == Extent::line;
-  const bool is_beyond = is_line ? std::abs(a) > half : a < half * std::sqrt(a * a + b * b);
-  return !is_beyond || speaks_beyond[(is_line ? a : b) > 0 ? 1 : 0];
+  const double beyond = is_line ? std::abs(a) - half : half * std::sqrt(a * a + b * b) - a;
+  return beyond <= (distance < 0 ? kLittle : 0) || speaks_beyond[(is_line ? a : b) > 0 ? 1 : 0];
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {

@@ -57,8 +57,9 @@ bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot)
     const ExactEdge& edge = body.edges[e];
     if (edge.fold == Fold::smooth) {
       if (is_beyond(edge, face, foot)) return false;
-    } else if (edge.speaks_for(foot)) {
+    } else {
       const double distance = body.faces[across(edge, face)].surface->at(foot).distance;
+      if (!edge.speaks_for(foot, distance)) continue;
       if (edge.fold == Fold::convex ? distance > 0 : distance < 0) return false;
     }
   }
@@ -202,9 +203,9 @@ bool Search::admit(const PlacedFeature& placed, std::uint32_t face, Candidate& c
     const ExactEdge& edge = base_.edges[e];
     const std::uint32_t other = across(edge, face);
     if (edge.fold == Fold::smooth && is_beyond(edge, face, foot)) return false;
-    if (edge.fold != Fold::convex || !edge.speaks_for(c.p)) continue;
+    if (edge.fold != Fold::convex) continue;
     const SurfaceAt there = base_.faces[other].surface->at(c.p);
-    if (decides(c.p, c.at, there, face < other)) continue;
+    if (!edge.speaks_for(c.p, there.distance) || decides(c.p, c.at, there, face < other)) continue;
     return face < other && cross_edge(placed, face, other, c);
   }
   return true;
@@ -265,8 +266,9 @@ bool Search::is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t 
   for (const std::uint32_t e : answer.edges) {
     const ExactEdge& edge = base_.edges[e];
     const std::uint32_t third = across(edge, face);
-    if (edge.fold != Fold::convex || third == other || !edge.speaks_for(c.p)) continue;
-    if (base_.faces[third].surface->at(c.p).distance > c.at.distance) return false;
+    if (edge.fold != Fold::convex || third == other) continue;
+    const double distance = base_.faces[third].surface->at(c.p).distance;
+    if (distance > c.at.distance && edge.speaks_for(c.p, distance)) return false;
   }
   return answer.where != Trim::Where::outside;
 }

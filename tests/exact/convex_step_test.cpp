@@ -1,0 +1,189 @@
+#include "engine/exact/convex_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/contact/allocations.hpp"
+#include "tests/exact/scenes.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace verisim::exact::test {
+namespace {
+
+using verisim::test::tolerance;
+
+constexpr double kStep = 0.001;
+
+ContactRow row_at(const Vector3d& normal, const Vector3d& point, double gap, double stiffness) {
+  return {.normal = normal, .point = point, .gap = gap, .stiffness = stiffness, .source = 0};
+}
+
+/// Rows around a hole, as a tight fit has them, at random gaps and with stiffnesses over four decades.
+std::vector<ContactRow> random_rows(Draw& draw, int count) {
+  std::vector<ContactRow> rows;
+  for (int i = 0; i < count; ++i) {
+    const Vector3d n = (draw.rotation() * Vector3d::UnitX()).normalized();
+    rows.push_back(row_at(n, draw.in_box({0.1, 0.1, 0.1}), draw.between(-2e-5, 2e-5),
+                          1e6 * std::pow(10.0, draw.between(0, 4))));
+  }
+  return rows;
+}
+
+Matrix6d random_matrix(Draw& draw) {
+  Matrix6d A;
+  for (int i = 0; i < 36; ++i) A(i) = draw.between(-1, 1);
+  return A * A.transpose() + 0.05 * Matrix6d::Identity();
+}
+Vector6d random_velocity(Draw& draw) {
+  Vector6d u;
+  for (int i = 0; i < 6; ++i) u[i] = draw.between(-0.05, 0.05);
+  return u;
+}
+
+Vector6d column(const Wrench& w) {
+  Vector6d c;
+  c << w.force, w.torque;
+  return c;
+}
+
+// One body of mass m meets one wall with speed v: u = v - dt f/m and f = -k (g + dt u), solved by hand.
+TEST(OneRow, GivesTheClosedForm) {
+  constexpr double kMass = 2;
+  constexpr double kStiffness = 1e6;
+  constexpr double kGap = 1e-5;
+  ConvexStep step(8);
+  Vector6d u0 = Vector6d::Zero();
+  u0.x() = -0.1;
+  const int body = step.add_body(Vector3d::Zero(), kMass * Matrix6d::Identity(), u0, Vector6d::Zero());
+  const ContactRow row = row_at(Vector3d::UnitX(), Vector3d::Zero(), kGap, kStiffness);
+  step.add_rows(std::span(&row, 1), kFixed, body);
+  EXPECT_EQ(step.solve(kStep), 1);
+  const double u = (kMass * -0.1 - kStep * kStiffness * kGap) / (kMass + kStep * kStep * kStiffness);
+  EXPECT_NEAR(step.velocity(body).x(), u, tolerance(1e-16));
+  EXPECT_NEAR(step.force(0), -kStiffness * (kGap + kStep * u), tolerance(1e-11));
+  EXPECT_NEAR(step.wrench(body).force.x(), step.force(0), 0);
+}
+
+// The condition for the one minimum: what the contacts' impulse changes is the momentum, M (u - u0) = dt sum J f.
+TEST(ConvexStep, EndsWhereMomentumBalances) {
+  int iterations_max = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const std::vector<ContactRow> rows = random_rows(draw, 40);
+    const Matrix6d M = random_matrix(draw);
+    const Vector6d u0 = random_velocity(draw);
+    ConvexStep step(64);
+    const int body = step.add_body(draw.in_box({0.1, 0.1, 0.1}), M, u0, random_velocity(draw));
+    step.add_rows(rows, kFixed, body);
+    iterations_max = std::max(iterations_max, step.solve(kStep));
+    const Vector6d impulse = kStep * column(step.wrench(body));
+    const Vector6d momentum = M * (step.velocity(body) - u0);
+    double scale = 0;
+    for (std::size_t i = 0; i < step.row_count(); ++i) scale += kStep * step.force(i);
+    ASSERT_LE((impulse - momentum).norm(), tolerance(1e-7 * scale + 1e-12));
+  }
+  EXPECT_LE(iterations_max, 30);
+}
+
+// The start of the search is no part of the answer.
+TEST(ConvexStep, EndsInTheSamePlaceFromAnywhere) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Draw draw(seed);
+    const std::vector<ContactRow> rows = random_rows(draw, 40);
+    const Matrix6d M = random_matrix(draw);
+    const Vector6d u0 = random_velocity(draw);
+    ConvexStep step(64);
+    Vector6d first = Vector6d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      step.clear();
+      const int body = step.add_body(Vector3d::Zero(), M, u0, (i * 10) * random_velocity(draw));
+      step.add_rows(rows, kFixed, body);
+      step.solve(kStep);
+      if (i == 0) first = step.velocity(body);
+      ASSERT_LE((step.velocity(body) - first).norm(), tolerance(1e-9)) << "seed " << seed;
+    }
+  }
+}
+
+// Two bodies that push each other: momentum is kept, and a partner of a million times the mass is like a wall.
+TEST(TwoBodies, KeepTheirMomentum) {
+  const ContactRow row = row_at(Vector3d::UnitX(), {0.05, 0.01, 0}, -1e-6, 1e8);
+  Vector6d u0 = Vector6d::Zero();
+  u0.x() = -0.1;
+  const auto solve = [&](double mass_of_first, bool fixed) {
+    ConvexStep step(8);
+    const int second = step.add_body({0.1, 0, 0}, Matrix6d::Identity(), u0, u0);
+    const int first = fixed ? kFixed
+                            : step.add_body(Vector3d::Zero(), mass_of_first * Matrix6d::Identity(), Vector6d::Zero(),
+                                            Vector6d::Zero());
+    step.add_rows(std::span(&row, 1), first, second);
+    step.solve(kStep);
+    if (!fixed) {
+      const Wrench a = step.wrench(first);
+      const Wrench b = step.wrench(second);
+      EXPECT_LE((a.force + b.force).norm(), 1e-12 * b.force.norm());
+      const Vector3d momentum = mass_of_first * step.velocity(first).head<3>() + step.velocity(second).head<3>();
+      EXPECT_NEAR(momentum.x(), -0.1, tolerance(1e-9));
+    }
+    return step.velocity(second);
+  };
+  solve(1, false);
+  const Vector6d against_wall = solve(1, true);
+  EXPECT_LE((solve(1e9, false) - against_wall).norm(), tolerance(1e-8));
+}
+
+// A column of bodies on a floor carries its weight: the lowest contact all of it.
+TEST(Stack, RestsOnItsLowestBody) {
+  constexpr int kCount = ConvexStep::kBodiesMax;
+  ConvexStep step(16);
+  std::array<Vector6d, kCount> u{};
+  std::array<double, kCount> gap{};
+  for (Vector6d& v : u) v.setZero();
+  for (int i = 0; i < 200; ++i) {
+    step.clear();
+    for (const Vector6d& v : u) {
+      Vector6d u0 = v;
+      u0.z() -= 9.81 * kStep;
+      step.add_body(Vector3d::Zero(), Matrix6d::Identity(), u0, v);
+    }
+    for (int j = 0; j < kCount; ++j) {
+      const ContactRow row = row_at(Vector3d::UnitZ(), Vector3d::Zero(), gap[static_cast<std::size_t>(j)], 1e8);
+      step.add_rows(std::span(&row, 1), j - 1, j);  // -1 is kFixed: the floor
+    }
+    step.solve(kStep);
+    for (int j = 0; j < kCount; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      u[at] = step.velocity(j);
+      gap[at] = step.gap_at_end(at);
+    }
+  }
+  for (int j = 0; j < kCount; ++j)
+    EXPECT_NEAR(step.force(static_cast<std::size_t>(j)), (kCount - j) * 9.81, tolerance(1e-5));
+}
+
+TEST(ConvexStep, LeavesOutRowsBeyondItsCapacityAndSaysSo) {
+  Draw draw(1);
+  ConvexStep step(10);
+  const int body = step.add_body(Vector3d::Zero(), Matrix6d::Identity(), Vector6d::Zero(), Vector6d::Zero());
+  step.add_rows(random_rows(draw, 12), kFixed, body);
+  EXPECT_EQ(step.row_count(), 10U);
+  EXPECT_EQ(step.left_out(), 2U);
+}
+
+TEST(ConvexStep, AllocatesNothing) {
+  Draw draw(1);
+  const std::vector<ContactRow> rows = random_rows(draw, 40);
+  ConvexStep step(64);
+  const std::uint64_t before = allocations;
+  for (int bodies = 1; bodies <= 3; ++bodies) {
+    step.clear();
+    for (int i = 0; i < bodies; ++i)
+      step.add_body(Vector3d::Zero(), Matrix6d::Identity(), Vector6d::Constant(-0.01 * i), Vector6d::Zero());
+    for (int i = 0; i < bodies; ++i) step.add_rows(std::span(rows).first(20), i - 1, i);
+    step.solve(kStep);
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+}  // namespace
+}  // namespace verisim::exact::test
