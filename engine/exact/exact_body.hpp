@@ -42,8 +42,9 @@ struct ExactEdge {
   /// A point may lie beyond the edge's end, and then the edge says nothing about it, unless the end is a corner where
   /// all edges are convex: there the material is inside of all of them. Lines: `along` . (p - middle) beyond +-half.
   /// Arcs of circles: middle the circle's centre, `along` and `on` towards the arc's middle and a quarter turn on,
-  /// half the cosine of half the arc. Others and full circles always speak. At a corner with a concave edge the material
-  /// is inside of this or of the next: a little beyond the end the edge still speaks for a point inside of both.
+  /// half the cosine of half the arc. Others and full circles always speak. At a corner with a concave edge the
+  /// material is inside of this or of the next: a little beyond the end the edge still speaks for a point inside of
+  /// both.
   enum class Extent : std::uint8_t { line, arc, all };
   Extent extent = Extent::all;
   Vector3d middle = Vector3d::Zero(), along = Vector3d::Zero(), on = Vector3d::Zero();

@@ -28,8 +28,8 @@ class PreciseSurface {
   /// Nothing for OtherSurface and for a surface without extent (zero radius, not finite).
   [[nodiscard]] static std::optional<PreciseSurface> from(const Surface& surface);
 
-  /// About 40 flops, one square root (torus: two). On the axis of a round surface, where no direction is nearest, the
-  /// answer is that of the surface's x axis.
+  /// About 40 flops, one square root (torus: two). On the axis of a round surface (within a picometre), where no
+  /// direction is nearest, the answer is that of the surface's x axis.
   [[nodiscard]] SurfaceAt at(const Vector3d& p) const;
 
   /// A chart of the surface for points on it, without trigonometry: plane (x, y) [m]; cylinder and cone (turn, height
@@ -73,7 +73,8 @@ inline SurfaceAt PreciseSurface::at(const Vector3d& p) const {
   if (kind_ == Kind::plane) return {height, axis_};
   const Vector3d across = d - height * axis_;
   const double rho = across.norm();
-  const Vector3d outward = rho > 0 ? Vector3d(across / rho) : x_axis_;
+  constexpr double kOnAxis = 1e-12;  // m: nearer, the direction would be rounding
+  const Vector3d outward = rho > kOnAxis ? Vector3d(across / rho) : x_axis_;
   switch (kind_) {
     case Kind::cylinder:
       return {side_ * (rho - radius_), side_ * outward};

@@ -22,8 +22,8 @@ std::vector<ContactRow> random_rows(Draw& draw, int count) {
   std::vector<ContactRow> rows;
   for (int i = 0; i < count; ++i) {
     const Vector3d n = (draw.rotation() * Vector3d::UnitX()).normalized();
-    rows.push_back(row_at(n, draw.in_box({0.1, 0.1, 0.1}), draw.between(-2e-5, 2e-5),
-                          1e6 * std::pow(10.0, draw.between(0, 4))));
+    rows.push_back(
+        row_at(n, draw.in_box({0.1, 0.1, 0.1}), draw.between(-2e-5, 2e-5), 1e6 * std::pow(10.0, draw.between(0, 4))));
   }
   return rows;
 }
