@@ -1,6 +1,8 @@
 // defineSimulationParameters and addObject: what makes a scene.
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
@@ -10,18 +12,32 @@ namespace {
 
 constexpr double kUsualVoxelSize = 0.003;  // m, SPARTA's published scripts
 
-Hybrid hybrid_named(lua_State* L, const std::string& what, const std::string& name) {
-  if (name == "off") return Hybrid::off;
-  if (name == "restore") return Hybrid::restore;
-  if (name == "blend") return Hybrid::blend;
-  if (name == "exact") return Hybrid::exact;
-  raise(L, "{} is '{}' but must be one of 'off', 'restore', 'blend', 'exact'", what, name);
+template <typename Value>
+using Named = std::pair<const char*, Value>;
+
+/// The value that goes by `name`; any other name is an error that lists them.
+template <typename Value, std::size_t n>
+Value named(lua_State* L, const char* what, const std::string& name, const Named<Value> (&values)[n]) {
+  std::vector<std::string> names;
+  for (const auto& [known, value] : values) {
+    if (name == known) return value;
+    names.emplace_back(known);
+  }
+  raise(L, "{} is '{}'{}", what, name, suggestion(name, names));
 }
 
-Integrator integrator_named(lua_State* L, const std::string& name) {
-  if (name == "semi-implicit") return Integrator::semi_implicit;
-  if (name == "implicit") return Integrator::implicit;
-  raise(L, "integrator is '{}'{}", name, suggestion(name, {"semi-implicit", "implicit"}));
+constexpr Named<Hybrid> kHybrids[] = {
+    {"off", Hybrid::off}, {"restore", Hybrid::restore}, {"blend", Hybrid::blend}, {"exact", Hybrid::exact}};
+constexpr Named<Integrator> kIntegrators[] = {{"semi-implicit", Integrator::semi_implicit},
+                                              {"implicit", Integrator::implicit}};
+constexpr Named<AlignmentMeasure> kAlignments[] = {
+    {"by-type", AlignmentMeasure::by_type}, {"faas", AlignmentMeasure::faas}, {"pavlik", AlignmentMeasure::pavlik}};
+constexpr Named<Reduction> kReductions[] = {{"common-freedom", Reduction::common_freedom},
+                                            {"exactly-one", Reduction::exactly_one}};
+
+template <typename Value, std::size_t n>
+void read_named(lua_State* L, Fields& fields, const char* field, const Named<Value> (&values)[n], Value& value) {
+  if (const auto name = fields.text(field)) value = named(L, field, *name, values);
 }
 
 // Words of SPARTA that change nothing here: said once, so that nobody thinks they do.
@@ -46,8 +62,10 @@ int define_simulation_parameters(lua_State* L) {
   }
   if (const auto duration = fields.positive("duration")) p.duration = duration;
   p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
-  if (const auto name = fields.text("integrator")) p.integrator = integrator_named(L, *name);
-  if (const auto name = fields.text("hybrid")) p.hybrid = hybrid_named(L, "hybrid", *name);
+  read_named(L, fields, "integrator", kIntegrators, p.integrator);
+  read_named(L, fields, "hybrid", kHybrids, p.hybrid);
+  read_named(L, fields, "alignment", kAlignments, p.alignment);
+  read_named(L, fields, "reduction", kReductions, p.reduction);
   p.max_stiffness = fields.positive("maxStiffness").value_or(p.max_stiffness);
   p.max_angular_stiffness = fields.positive("maxAngularStiffness").value_or(p.max_angular_stiffness);
   p.max_coupling_force = fields.positive("maxCouplingForce").value_or(p.max_coupling_force);
@@ -125,7 +143,7 @@ void read_hybrid(lua_State* L, Fields& fields, BodyDescription& body) {
   if (lua_type(L, -1) == LUA_TBOOLEAN)
     body.hybrid = lua_toboolean(L, -1) != 0 ? Hybrid::restore : Hybrid::off;
   else
-    body.hybrid = hybrid_named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"));
+    body.hybrid = named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"), kHybrids);
   lua_pop(L, 1);
 }
 

@@ -11,7 +11,7 @@ namespace {
 TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   WrittenScenario written(R"(defineSimulationParameters{
     timestep = 0.002, gravity = {0, 0, -9.81}, seed = 7, duration = 3, frameRate = 30, integrator = "implicit",
-    hybrid = "off", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
+    hybrid = "off", alignment = "pavlik", reduction = "exactly-one", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
     limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, graspDistance = 0.2 })");
   const Scene& scene = written.build();
   const SimulationParameters& p = scene.parameters;
@@ -22,6 +22,8 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   EXPECT_EQ(p.frame_rate, 30);
   EXPECT_EQ(p.integrator, Integrator::implicit);
   EXPECT_EQ(p.hybrid, Hybrid::off);
+  EXPECT_EQ(p.alignment, AlignmentMeasure::pavlik);
+  EXPECT_EQ(p.reduction, Reduction::exactly_one);
   EXPECT_EQ(p.max_stiffness, 1000);
   EXPECT_EQ(p.max_angular_stiffness, 0.2);
   EXPECT_TRUE(p.all_bodies_are_dynamic);
@@ -52,6 +54,12 @@ TEST(DefineSimulationParameters, RefusesWhatIsWrongWithPlaceAndRemedy) {
   EXPECT_NE(refusal_of("defineSimulationParameters{gravity = {0, 0/0, 0}}").find("gravity[2] is"), std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{maxStiffness = 1/0}").find("must be finite"), std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{integrator = 'implicit-euler'}").find("did you mean 'implicit'?"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("defineSimulationParameters{hybrid = 'blended'}").find("did you mean 'blend'?"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("defineSimulationParameters{alignment = 'bytype'}").find("did you mean 'by-type'?"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("defineSimulationParameters{reduction = 'one'}").find("(common-freedom, exactly-one)"),
             std::string::npos);
   EXPECT_EQ(
       refusal_of("defineSimulationParameters(3)"),
