@@ -100,7 +100,8 @@ struct RunOfSets {
 /// One brick after the other; keeps its buffers.
 class BrickAssociation {
  public:
-  BrickAssociation(const Model& model, RunOfSets& run) : model_(model), run_(run) {}
+  BrickAssociation(const Model& model, EntityNumber first_edge, RunOfSets& run)
+      : model_(model), first_edge_(first_edge), run_(run) {}
 
   /// Writes for each surface voxel of the brick 0 or 1 + its set's place among the brick's sets.
   void associate(std::size_t entry, FeatureSetId* features) {
@@ -193,9 +194,8 @@ class BrickAssociation {
       }
       if (any(cells)) passing_.push_back({candidate.face, cells});
     }
-    const auto faces = static_cast<std::uint32_t>(model_.faces.size());
     for (const Passing& edge : passing_edges_) {
-      if (any(edge.cells)) passing_.push_back({faces + edge.entity, edge.cells});
+      if (any(edge.cells)) passing_.push_back({first_edge_ + edge.entity, edge.cells});
     }
   }
 
@@ -260,6 +260,7 @@ class BrickAssociation {
   }
 
   const Model& model_;
+  EntityNumber first_edge_;  // number of the part's first edge
   RunOfSets& run_;
   Eigen::Vector3i corner_ = {0, 0, 0};
   BrickMask cells_{};  // the brick's surface voxels
@@ -292,20 +293,33 @@ void number_sets(const std::vector<std::unique_ptr<RunOfSets>>& runs, const Mode
   }
 }
 
-}  // namespace
+/// The faces and edges of the part and those declared, and the sets of the latter.
+BodyFeatures entities_of(const std::string& name, const Part& part, const AssociateOptions& options) {
+  BodyFeatures features{part.faces, part.edges, FeatureSets(name, options.most_sets)};
+  if (options.declared == nullptr) return features;
+  const DeclaredFeatures& declared = *options.declared;
+  features.faces.insert(features.faces.end(), declared.faces().begin(), declared.faces().end());
+  features.edges.insert(features.edges.end(), declared.edges().begin(), declared.edges().end());
+  for (std::size_t id = 1; id <= declared.size(); ++id) {
+    const std::vector<EntityNumber> set =
+        declared.numbered(static_cast<FeatureSetId>(id), static_cast<EntityNumber>(part.faces.size()),
+                          static_cast<EntityNumber>(features.faces.size() + part.edges.size()));
+    const FeatureSetId number = features.sets.intern(set);
+    VERISIM_ASSERT(number == id);
+  }
+  return features;
+}
 
-AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
-                            VoxelBody& body) {
-  VERISIM_ASSERT(part.has_brep() && part.mesh.face_of_triangle.size() == part.mesh.triangles.size());
+AssociationReport associate_part(const Part& part, unsigned threads, VoxelBody& body) {
+  VERISIM_ASSERT(part.mesh.face_of_triangle.size() == part.mesh.triangles.size());
   const Model model(part, body.voxmap);
-  body.features = {part.faces, part.edges, FeatureSets(name, options.most_sets)};
-  body.shell.features.assign(body.voxmap.surface_count, 0);
+  const auto first_edge = static_cast<EntityNumber>(body.features.faces.size());
   const std::size_t bricks = model.bricks.brick.size();
   std::vector<std::unique_ptr<RunOfSets>> runs(bricks);  // each at the place of its first brick
-  for_each_run(bricks, options.threads, [&](std::size_t begin, std::size_t end) {
+  for_each_run(bricks, threads, [&](std::size_t begin, std::size_t end) {
     if (begin == end) return;
     runs[begin] = std::make_unique<RunOfSets>();
-    BrickAssociation association(model, *runs[begin]);
+    BrickAssociation association(model, first_edge, *runs[begin]);
     for (std::size_t entry = begin; entry < end; ++entry) {
       const std::uint32_t block = body.voxmap.brick_block[model.bricks.brick[entry]];
       association.associate(entry, body.shell.features.data() + body.voxmap.first_surface[block]);
@@ -319,6 +333,23 @@ AssociationReport associate(const std::string& name, const Part& part, const Ass
     report.without += run->without;
   }
   for (const PreparedFace& face : model.faces) report.loose_faces += face.is_loose ? 1 : 0;
+  return report;
+}
+
+}  // namespace
+
+AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
+                            VoxelBody& body) {
+  body.features = entities_of(name, part, options);
+  body.shell.features.assign(body.voxmap.surface_count, 0);
+  const AssociationReport report = part.has_brep() ? associate_part(part, options.threads, body)
+                                                   : AssociationReport{.without = body.voxmap.surface_count};
+  if (options.declared == nullptr || options.declared->of_voxel().empty()) return report;
+  const std::vector<FeatureSetId>& declared = options.declared->of_voxel();
+  VERISIM_ASSERT(declared.size() == body.shell.features.size());
+  for (std::size_t i = 0; i < declared.size(); ++i) {
+    if (declared[i] != 0) body.shell.features[i] = declared[i];
+  }
   return report;
 }
 

@@ -1,0 +1,163 @@
+#include "engine/voxel/declared_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
+
+namespace verisim {
+
+namespace {
+
+constexpr double kUnitLength = 1e-9;  // a direction's length may differ from one by this
+
+/// What an entity is made of, in one shape for all kinds.
+struct Numbers {
+  std::size_t kind = 0;
+  Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
+  double first = 1, second = 1;  // lengths or angles that must be above zero
+  bool operator==(const Numbers&) const = default;
+};
+
+struct NumbersOf {
+  Numbers operator()(const Plane& s) const { return {0, s.point, s.normal}; }
+  Numbers operator()(const Cylinder& s) const { return {1, s.point, s.direction, s.radius}; }
+  Numbers operator()(const Cone& s) const { return {2, s.point, s.direction, 1 + s.radius, s.half_angle}; }
+  Numbers operator()(const Sphere& s) const { return {3, s.center, Vector3d::UnitZ(), s.radius}; }
+  Numbers operator()(const Torus& s) const { return {4, s.center, s.direction, s.major_radius, s.minor_radius}; }
+  Numbers operator()(const OtherSurface&) const { return {5}; }
+  Numbers operator()(const Line& c) const { return {6, c.point, c.direction}; }
+  Numbers operator()(const Circle& c) const { return {7, c.center, c.normal, c.radius}; }
+  Numbers operator()(const Ellipse& c) const { return {8, c.center, c.normal, c.major_radius, c.minor_radius}; }
+  Numbers operator()(const OtherCurve&) const { return {9}; }
+};
+
+Numbers numbers_of(const Face& face) {
+  return std::visit(NumbersOf{}, face.surface);
+}
+Numbers numbers_of(const Edge& edge) {
+  return std::visit(NumbersOf{}, edge.curve);
+}
+
+void check(const std::string& owner, const DeclaredFeatures::Entity& entity) {
+  const Numbers n = std::visit([](const auto& e) { return numbers_of(e); }, entity);
+  if (!n.point.allFinite() || !n.direction.allFinite() || !std::isfinite(n.first + n.second)) {
+    fail(ErrorKind::input, "'{}': a declared entity has a number that is not finite; give all of its fields", owner);
+  }
+  if (std::abs(n.direction.norm() - 1) > kUnitLength) {
+    fail(ErrorKind::input, "'{}': a declared entity's normal has length {}; give one of length 1", owner,
+         n.direction.norm());
+  }
+  if (!(n.first > 0 && n.second > 0)) {
+    fail(ErrorKind::input, "'{}': a declared entity has a radius or angle of {} but it must be above 0", owner,
+         std::min(n.first, n.second));
+  }
+}
+
+template <class Item>
+std::uint32_t found_or_added(std::vector<Item>& items, const Item& item) {
+  const auto equal = [&](const Item& other) { return numbers_of(other) == numbers_of(item); };
+  const auto known = std::ranges::find_if(items, equal);
+  if (known != items.end()) return static_cast<std::uint32_t>(known - items.begin());
+  items.push_back(item);
+  return static_cast<std::uint32_t>(items.size() - 1);
+}
+
+}  // namespace
+
+DeclaredFeatures::Place DeclaredFeatures::place_of(const Entity& entity) {
+  if (const auto* edge = std::get_if<Edge>(&entity)) return 2 * found_or_added(edges_, *edge) + 1;
+  const std::uint32_t index = found_or_added(faces_, std::get<Face>(entity));
+  met_.resize(faces_.size(), false);
+  lean_.resize(faces_.size(), 0);
+  return 2 * index;
+}
+
+FeatureSetId DeclaredFeatures::add(const std::string& owner, std::span<const Entity> set) {
+  if (set.empty()) return 0;
+  for (const Entity& entity : set) check(owner, entity);
+  std::vector<Place> places;
+  for (const Entity& entity : set) places.push_back(place_of(entity));
+  std::ranges::sort(places);
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  const auto known = std::ranges::find(sets_, places);
+  if (known != sets_.end()) return static_cast<FeatureSetId>(known - sets_.begin() + 1);
+  if (sets_.size() == FeatureSets::kMostSets) {
+    fail(ErrorKind::input, "'{}': more than {} different sets are declared; use fewer", owner, FeatureSets::kMostSets);
+  }
+  sets_.push_back(std::move(places));
+  return static_cast<FeatureSetId>(sets_.size());
+}
+
+/// Adds a voxel's say about whether the face is a hole. A voxel where faces meet says little or the contrary.
+void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d& inward) {
+  Surface& surface = faces_[face].surface;
+  const auto from_axis = [&](const Vector3d& point, const Vector3d& direction) {
+    const Vector3d arm = p - point;
+    return Vector3d((arm - arm.dot(direction) * direction).normalized());
+  };
+  const auto add = [&](bool& hole, const Vector3d& away) {
+    lean_[face] += away.dot(inward);
+    hole = lean_[face] > 0;
+  };
+  if (auto* cylinder = std::get_if<Cylinder>(&surface)) {
+    add(cylinder->hole, from_axis(cylinder->point, cylinder->direction));
+  } else if (auto* cone = std::get_if<Cone>(&surface)) {
+    add(cone->hole, from_axis(cone->point, cone->direction) - pinned::tan(cone->half_angle) * cone->direction);
+  } else if (auto* sphere = std::get_if<Sphere>(&surface)) {
+    add(sphere->hole, (p - sphere->center).normalized());
+  }
+}
+
+/// Widens the face's bounds to a voxel: along an axis all of it; around an axis everything is taken as covered.
+void DeclaredFeatures::extend(std::size_t face, const Vector3d& p, double half_side) {
+  Face& f = faces_[face];
+  const auto widen = [&](std::array<double, 2>& range, double at) {
+    range[0] = met_[face] ? std::min(range[0], at - half_side) : at - half_side;
+    range[1] = met_[face] ? std::max(range[1], at + half_side) : at + half_side;
+  };
+  if (const auto* plane = std::get_if<Plane>(&f.surface)) {
+    widen(f.u_range, (p - plane->point).dot(plane->x_axis));
+    widen(f.v_range, (p - plane->point).dot(plane->normal.cross(plane->x_axis)));
+    return;
+  }
+  f.u_range = {0, 2 * pinned::kPi};
+  if (const auto* cylinder = std::get_if<Cylinder>(&f.surface)) {
+    widen(f.v_range, (p - cylinder->point).dot(cylinder->direction));
+  } else if (const auto* cone = std::get_if<Cone>(&f.surface)) {
+    widen(f.v_range, (p - cone->point).dot(cone->direction));
+  } else if (std::holds_alternative<Sphere>(f.surface)) {
+    f.v_range = {-0.5 * pinned::kPi, 0.5 * pinned::kPi};
+  } else {
+    f.v_range = {0, 2 * pinned::kPi};
+  }
+}
+
+void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, FeatureSetId id) {
+  VERISIM_ASSERT(voxel < body.voxmap.surface_count && id <= sets_.size() && body.shell.voxel.empty());
+  if (of_voxel_.empty()) of_voxel_.assign(body.voxmap.surface_count, 0);
+  of_voxel_[voxel] = id;
+  if (id == 0) return;
+  const Pointshell& shell = body.shell;
+  const Vector3d p = shell.reference + Vector3d(shell.x[voxel], shell.y[voxel], shell.z[voxel]);
+  for (const Place place : sets_[id - std::size_t{1}]) {
+    if (place % 2 != 0) continue;
+    const std::size_t face = place / 2;
+    weigh(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
+    extend(face, p, 0.5 * body.voxmap.voxel_size);
+    met_[face] = true;
+  }
+}
+
+std::vector<EntityNumber> DeclaredFeatures::numbered(FeatureSetId id, EntityNumber first_face,
+                                                     EntityNumber first_edge) const {
+  std::vector<EntityNumber> entities;
+  for (const Place place : sets_[id - std::size_t{1}]) {
+    entities.push_back(place % 2 == 0 ? first_face + place / 2 : first_edge + place / 2);
+  }
+  std::ranges::sort(entities);
+  return entities;
+}
+
+}  // namespace verisim

@@ -1,0 +1,264 @@
+// The association's laws on small parts: order and identity of sets, threads, bad input, entities declared by hand.
+// That sets hold the right entities is association_kernel_test.cpp's.
+#include "engine/voxel/association.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/voxel/voxelize.hpp"
+#include "tests/geometry/models.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace verisim {
+namespace {
+
+using testing::make;
+using testing::placed;
+using Kind = Solid::Kind;
+
+Part drilled_block() {
+  return load_solid(make(Kind::difference, make(Kind::box, {0.06, 0.05, 0.03}), make(Kind::cylinder, {0.01, 0.1})), {});
+}
+
+VoxelBody associated(const Part& part, double voxel_size, const AssociateOptions& options = {}) {
+  VoxelBody body = voxelize(part.name, part.mesh, {.voxel_size = voxel_size});
+  associate(part.name, part, options, body);
+  return body;
+}
+
+Vector3d center(const VoxelBody& body, std::uint32_t voxel) {
+  const Pointshell& shell = body.shell;
+  return shell.reference + Vector3d(shell.x[voxel], shell.y[voxel], shell.z[voxel]);
+}
+
+std::vector<EntityNumber> set_of(const VoxelBody& body, std::uint32_t voxel) {
+  const std::span<const EntityNumber> set = body.features.sets[body.shell.features[voxel]];
+  return {set.begin(), set.end()};
+}
+
+TEST(Association, NumbersSetsInTheOrderOfTheirFirstVoxels) {
+  const VoxelBody body = associated(drilled_block(), 0.002);
+  FeatureSetId largest = 0;
+  for (const FeatureSetId id : body.shell.features) {
+    EXPECT_LE(id, largest + 1);
+    largest = std::max(largest, id);
+  }
+  EXPECT_EQ(largest + 1U, body.features.sets.size());
+  for (std::size_t id = 1; id < body.features.sets.size(); ++id) {
+    for (std::size_t other = 0; other < id; ++other) {
+      EXPECT_FALSE(std::ranges::equal(body.features.sets[static_cast<FeatureSetId>(id)],
+                                      body.features.sets[static_cast<FeatureSetId>(other)]));
+    }
+  }
+}
+
+TEST(Association, IsTheSameForAnyNumberOfThreads) {
+  const Part part = drilled_block();
+  const VoxelBody one = associated(part, 0.0007);
+  for (const unsigned threads : {2U, 5U}) {
+    const VoxelBody many = associated(part, 0.0007, {.threads = threads});
+    EXPECT_EQ(many.shell.features, one.shell.features);
+    EXPECT_EQ(many.features.sets.size(), one.features.sets.size());
+  }
+}
+
+TEST(Association, OfAVoxelIsFoundByItsSlotAndByItsPoint) {
+  const VoxelBody body = associated(drilled_block(), 0.002);
+  std::uint32_t found = 0;
+  for (std::uint32_t slot = 0; slot < body.voxmap.layers.size(); ++slot) {
+    const std::int64_t number = surface_number_of_slot(body.voxmap, slot);
+    if (number < 0) {
+      ASSERT_EQ(feature_at(body, slot), 0);
+      continue;
+    }
+    ASSERT_EQ(number, found++);
+    ASSERT_EQ(feature_at(body, slot), body.shell.features[static_cast<std::size_t>(number)]);
+    ASSERT_EQ(feature_of_point(body.shell, static_cast<std::uint32_t>(number)), feature_at(body, slot));
+  }
+  EXPECT_EQ(found, body.voxmap.surface_count);
+}
+
+TEST(Association, RefusesMoreSetsThanAllowedAndNamesThePart) {
+  const Part part = drilled_block();
+  VoxelBody body = voxelize("bracket", part.mesh, {.voxel_size = 0.002});
+  test::expect_refused([&] { return associate("bracket", part, {.most_sets = 20}, body); },
+                       "'bracket': more than 20 different sets");
+}
+
+TEST(Association, OfAPartThatIsThereTwiceHoldsBothOfEveryFace) {
+  const Part once = drilled_block();
+  Part twice = once;
+  const auto faces = static_cast<std::uint32_t>(once.faces.size()),
+             edges = static_cast<std::uint32_t>(once.edges.size());
+  twice.faces.insert(twice.faces.end(), once.faces.begin(), once.faces.end());
+  twice.edges.insert(twice.edges.end(), once.edges.begin(), once.edges.end());
+  testing::append(twice.mesh, once.mesh);
+  for (const std::uint32_t face : once.mesh.face_of_triangle) twice.mesh.face_of_triangle.push_back(face + faces);
+  for (std::size_t i = faces; i < twice.faces.size(); ++i) {
+    for (std::uint32_t& edge : twice.faces[i].edges) edge += edges;
+  }
+  for (std::size_t i = edges; i < twice.edges.size(); ++i) {
+    for (std::uint32_t& face : twice.edges[i].faces) face += faces;
+  }
+  const VoxelBody single = associated(once, 0.002), both = associated(twice, 0.002);
+  ASSERT_EQ(single.voxmap.surface_count, both.voxmap.surface_count);
+  for (std::uint32_t i = 0; i < single.voxmap.surface_count; ++i) {
+    std::vector<EntityNumber> wanted;
+    for (const EntityNumber e : set_of(single, i)) {
+      const EntityNumber in_both = e < faces ? e : e + faces;
+      wanted.push_back(in_both);
+      wanted.push_back(in_both + (e < faces ? faces : edges));
+    }
+    std::ranges::sort(wanted);
+    ASSERT_EQ(set_of(both, i), wanted) << "voxel " << i;
+  }
+}
+
+/// Every triangle a face of no known kind, with its sides as edges: thousands of faces.
+Part freeform(const TriangleMesh& mesh) {
+  Part part;
+  part.name = "freeform";
+  part.mesh = mesh;
+  part.mesh.face_of_triangle.clear();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    part.mesh.face_of_triangle.push_back(t);
+    part.faces.push_back({.surface = OtherSurface{}, .edges = {}});
+  }
+  return part;
+}
+
+TEST(Association, OfThousandsOfFreeformFacesFollowsTheirTriangles) {
+  TriangleMesh mesh = load_solid(make(Kind::sphere, {0.02}), {.deflection = 0.00001}).mesh;
+  ASSERT_GT(mesh.triangles.size(), 2000U);
+  const Part part = freeform(mesh);
+  const VoxelBody body = associated(part, 0.001);
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; i += 37) {
+    std::vector<EntityNumber> wanted;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      if (triangle_touches_box(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], center(body, i), 0.0005)) {
+        wanted.push_back(t);
+      }
+    }
+    ASSERT_EQ(set_of(body, i), wanted) << "voxel " << i;
+  }
+}
+
+TEST(Association, PassesByEntitiesThatTouchNoVoxelOrAreNothing) {
+  Part part = drilled_block();
+  const VoxelBody before = associated(part, 0.002);
+  const auto faces = static_cast<EntityNumber>(part.faces.size());
+  Edge far;
+  far.curve = Line{{5, 5, 5}, Vector3d::UnitX()};
+  far.t_range = {0, 1};
+  Edge empty;
+  empty.curve = OtherCurve{};
+  part.edges.push_back(far);
+  part.edges.push_back(empty);
+  part.faces.push_back({.surface = Sphere{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), 0, false}, .edges = {}});
+  const VoxelBody after = associated(part, 0.002);
+  for (std::uint32_t i = 0; i < before.voxmap.surface_count; ++i) {
+    std::vector<EntityNumber> wanted = set_of(before, i);
+    for (EntityNumber& e : wanted) e += e >= faces ? 1 : 0;  // one more face stands before the edges
+    ASSERT_EQ(set_of(after, i), wanted);
+  }
+}
+
+TEST(Association, GivesAVoxelThatOnlyTrianglesTouchTheirFace) {
+  const Part part = load_solid(make(Kind::sphere, {0.02}), {.deflection = 0.001, .angular_deflection = 0.5});
+  VoxelBody body = voxelize("ball", part.mesh, {.voxel_size = 0.0005});
+  const AssociationReport report = associate("ball", part, {}, body);
+  EXPECT_GT(report.stand_ins, 1000U) << "a tessellation far coarser than its voxels";
+  EXPECT_EQ(report.without, 0U);
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; ++i) ASSERT_EQ(set_of(body, i).front(), 0U);
+}
+
+// --- by hand --------------------------------------------------------------------------------------------------------
+
+Face cylinder_face(double radius) {
+  return {.surface = Cylinder{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), radius, false}, .edges = {}};
+}
+
+/// As the published demonstration does: voxels within one and a half of the radius get the cylinder.
+DeclaredFeatures near_cylinder(const VoxelBody& body, double radius) {
+  DeclaredFeatures declared;
+  const DeclaredFeatures::Entity entity = cylinder_face(radius);
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; ++i) {
+    const Vector3d p = center(body, i);
+    if (std::abs(std::hypot(p.x(), p.y()) - radius) > 1.5 * body.voxmap.voxel_size) continue;
+    declared.assign(body, i, declared.add("block", {&entity, 1}));
+  }
+  return declared;
+}
+
+TEST(DeclaredFeatures, MakeTheFirstAddedSetNumberOne) {
+  Part part = drilled_block();
+  part.faces.clear();
+  part.edges.clear();
+  part.mesh.face_of_triangle.clear();
+  VoxelBody body = voxelize("block", part.mesh, {.voxel_size = 0.002});
+  const DeclaredFeatures declared = near_cylinder(body, 0.01);
+  EXPECT_EQ(declared.size(), 1U) << "equal sets are one set";
+  EXPECT_EQ(declared.entities_in(1), 1U);
+  associate("block", part, {.declared = &declared}, body);
+  std::size_t with = 0;
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; ++i) {
+    const Vector3d p = center(body, i);
+    const bool near = std::abs(std::hypot(p.x(), p.y()) - 0.01) <= 1.5 * 0.002;
+    ASSERT_EQ(body.shell.features[i], near ? 1 : 0);
+    with += near ? 1 : 0;
+  }
+  EXPECT_GT(with, 100U);
+  const auto& cylinder = std::get<Cylinder>(body.features.face(0).surface);
+  EXPECT_TRUE(cylinder.hole) << "the material is outside";
+  EXPECT_NEAR(body.features.face(0).v_range[0], -0.015, 0.0021);
+  EXPECT_NEAR(body.features.face(0).v_range[1], 0.015, 0.0021);
+}
+
+TEST(DeclaredFeatures, ReplaceThePartsOwnInTheirVoxelsAndExtendItsFaces) {
+  const Part part = drilled_block();
+  const VoxelBody own = associated(part, 0.002);
+  VoxelBody body = voxelize("block", part.mesh, {.voxel_size = 0.002});
+  const DeclaredFeatures declared = near_cylinder(body, 0.01);
+  associate("block", part, {.declared = &declared}, body);
+  ASSERT_EQ(body.features.faces.size(), part.faces.size() + 1);
+  const auto added = static_cast<EntityNumber>(part.faces.size());
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; ++i) {
+    std::vector<EntityNumber> wanted = set_of(own, i);
+    for (EntityNumber& e : wanted) e += e >= added ? 1 : 0;
+    if (declared.of_voxel()[i] != 0) wanted = {added};
+    ASSERT_EQ(set_of(body, i), wanted);
+  }
+}
+
+TEST(DeclaredFeatures, TellsEqualEntitiesFromOthersByTheirNumbers) {
+  DeclaredFeatures declared;
+  const DeclaredFeatures::Entity a = cylinder_face(0.01), b = cylinder_face(0.02);
+  const std::array<DeclaredFeatures::Entity, 2> both = {a, b}, reversed = {b, a};
+  EXPECT_EQ(declared.add("part", {&a, 1}), 1);
+  EXPECT_EQ(declared.add("part", both), 2);
+  EXPECT_EQ(declared.add("part", reversed), 2);
+  EXPECT_EQ(declared.add("part", {&b, 1}), 3);
+  EXPECT_EQ(declared.add("part", {}), 0);
+  EXPECT_EQ(declared.faces().size(), 2U);
+  EXPECT_EQ(declared.entities_in(2), 2U);
+}
+
+TEST(DeclaredFeatures, RefuseEntitiesThatAreNone) {
+  DeclaredFeatures declared;
+  const auto refused = [&](const DeclaredFeatures::Entity& entity, const char* why) {
+    test::expect_refused([&] { return declared.add("pin", {&entity, 1}); }, why);
+  };
+  refused(cylinder_face(0), "'pin': a declared entity has a radius or angle of 0");
+  refused(cylinder_face(-1), "has a radius or angle of -1");
+  refused(cylinder_face(std::nan("")), "not finite");
+  refused(Face{.surface = Plane{{0, 0, 0}, {0, 0, 2}, {1, 0, 0}}, .edges = {}}, "normal has length 2");
+  Edge edge;
+  edge.curve = Circle{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), 0};
+  refused(edge, "radius or angle of 0");
+}
+
+}  // namespace
+}  // namespace verisim
