@@ -7,6 +7,7 @@
 #include "engine/cli/commands.hpp"
 #include "engine/geometry/loader.hpp"
 #include "engine/simulation/inputs.hpp"
+#include "engine/voxel/association.hpp"
 #include "engine/voxel/voxelize.hpp"
 
 namespace verisim::cli {
@@ -28,20 +29,33 @@ struct VoxelStatistics {
   std::uint32_t surface_voxels = 0;
   std::size_t memory_bytes = 0;
   std::size_t feature_sets = 0;
-  std::string refused;
+  std::vector<std::string> notes;
 };
 
 VoxelStatistics voxel_statistics(const Part& part, double voxel_size) {
   VoxelStatistics v;
   if (!part.watertight) {
-    v.refused = "not watertight";
+    v.notes.emplace_back("not voxelized: not watertight");
     return v;
   }
   VoxelizeOptions options;
   options.voxel_size = voxel_size;
-  const VoxelBody body = voxelize(part.name, part.mesh, options);
+  VoxelBody body = voxelize(part.name, part.mesh, options);
   v.surface_voxels = body.voxmap.surface_count;
-  v.memory_bytes = body.voxmap.memory_bytes() + body.shell.memory_bytes();
+  if (part.has_brep()) {
+    const AssociationReport report = associate(part.name, part, {}, body);
+    v.feature_sets = body.features.sets.size() - 1;
+    v.memory_bytes = body.features.sets.memory_bytes();
+    if (report.stand_ins > 0)
+      v.notes.push_back(
+          fmt::format("{} of its surface voxels are touched by its triangles only, not by the faces; a "
+                      "smaller deflection makes them fewer",
+                      report.stand_ins));
+    if (report.loose_faces > 0)
+      v.notes.push_back(fmt::format(
+          "{} of its faces have bounds that do not close; voxels know them by their triangles", report.loose_faces));
+  }
+  v.memory_bytes += body.voxmap.memory_bytes() + body.shell.memory_bytes();
   return v;
 }
 
@@ -121,7 +135,8 @@ void print_table(const ordered_json& report) {
     row("edges", listed(p["edges"]));
     row("triangles", fmt::format("{}", p["triangles"].get<std::size_t>()));
     if (p.contains("surface_voxels"))
-      row("voxels", fmt::format("{} on the surface, {:.2f} MB", p["surface_voxels"].get<std::size_t>(),
+      row("voxels", fmt::format("{} on the surface, {} sets of faces and edges, {:.2f} MB",
+                                p["surface_voxels"].get<std::size_t>(), p["feature_sets"].get<std::size_t>(),
                                 p["memory_bytes"].get<double>() / 1e6));
     for (const auto& note : p["notes"]) row("note", note.get<std::string>());
   }
@@ -156,7 +171,7 @@ void inspect(const InspectOptions& o) {
       j["surface_voxels"] = v.surface_voxels;
       j["feature_sets"] = v.feature_sets;
       j["memory_bytes"] = v.memory_bytes;
-      if (!v.refused.empty()) j["notes"].push_back("not voxelized: " + v.refused);
+      for (const std::string& note : v.notes) j["notes"].push_back(note);
     }
     report["parts"].push_back(std::move(j));
   }
@@ -174,7 +189,7 @@ void add_inspect(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("inspect", "Parts, entities, mating features, voxels of a model");
   auto o = std::make_shared<InspectOptions>();
   command->add_option("MODEL", o->model, "STEP, BREP, STL, OBJ, PLY or glTF file")->required();
-  command->add_option("--voxel", o->voxel, "Voxel size [m]: adds surface voxels and memory");
+  command->add_option("--voxel", o->voxel, "Voxel size [m]: adds surface voxels, sets of faces and edges, memory");
   command->add_option("--scale", o->scale, "Metres per unit of a mesh file (0.001: it is in millimetres)");
   command->add_option("--density", o->density, "kg/m^3 for the mass (default 1000)");
   command->add_option("--deflection", o->deflection, "Chord error of the tessellation [m]");
