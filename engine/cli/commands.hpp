@@ -12,6 +12,7 @@ void add_recover(CLI::App& app, int& exit_code);
 void add_inspect(CLI::App& app, int& exit_code);
 void add_trace(CLI::App& app, int& exit_code);
 void add_wii(CLI::App& app, int& exit_code);
+void add_reproduce(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 
 }  // namespace verisim::cli

@@ -21,6 +21,7 @@ int run_command(int argc, char** argv) {
   verisim::cli::add_inspect(app, exit_code);
   verisim::cli::add_trace(app, exit_code);
   verisim::cli::add_wii(app, exit_code);
+  verisim::cli::add_reproduce(app, exit_code);
   verisim::cli::add_doctor(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -24,6 +24,7 @@ MAY_INCLUDE = {
     "wii": "base",
     "vrpn": "base",
     "record": "base",
+    "reproduce": "base geometry voxel contact constraint wii",
     "simulation": "base geometry voxel contact constraint exact dynamics device robot wii record",
     "script": "base geometry device robot wii record simulation",
 }
@@ -50,6 +51,7 @@ MAY_READ_THE_CLOCK = {
     "engine/record/recorder.cpp",
     "engine/geometry/cad_client.cpp",
     "engine/cli/doctor.cpp",
+    "engine/cli/reproduce.cpp",
     "engine/cli/run_loop.cpp",
     "engine/cli/session.cpp",
     "engine/cli/wire_clock.cpp",

@@ -1,0 +1,31 @@
+// One simulation, run to its end into one run file.
+#pragma once
+
+#include <string>
+
+#include "engine/cli/summary.hpp"
+
+namespace verisim::cli {
+
+struct RecordOptions {
+  std::string file;    ///< run file to write; its folder is made
+  bool paced = false;  ///< by the wall clock
+  bool embed = true;   ///< the content of every input goes into the run file
+  bool progress = false;
+};
+
+struct RecordedRun {
+  LoopResult loop;
+  Summary summary;
+};
+
+/// Runs `session` and closes the file, also if it diverged or was interrupted. Error(io) if the file cannot be made.
+[[nodiscard]] RecordedRun record_run(Session& session, const RecordOptions& options);
+
+/// The folder of a file that is to be written, made if it is not there. Error(io).
+void make_folder_of(const std::string& file);
+
+/// The promised exit code of a loop's end.
+[[nodiscard]] int exit_code_of(LoopEnd end);
+
+}  // namespace verisim::cli

@@ -1,0 +1,145 @@
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/recorded_run.hpp"
+#include "engine/reproduce/reproductions.hpp"
+
+namespace verisim::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using reproduce::Figure;
+using reproduce::Reproduction;
+using reproduce::Row;
+
+struct Options {
+  std::string out = "runs/reproduce";
+  std::string scenarios;
+  std::vector<std::string> only;
+  bool quick = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The shipped scenarios: in the folder beside the program's own, or one further up.
+std::string scenarios_folder() {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  for (fs::path folder = program.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
+    if (fs::exists(folder / "scenarios" / "peg_in_hole.lua", ignored)) return (folder / "scenarios").string();
+  return "scenarios";
+}
+
+/// A run as `verisim run` makes it. Error(diverged, io, interrupted) if it did not come to its end.
+reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::RunRequest& request) {
+  ScenarioOptions options;
+  options.path = (fs::path(folder) / (request.scenario + ".lua")).string();
+  options.sets = request.sets;
+  options.duration = request.duration;
+  auto inputs = std::make_unique<Inputs>(Inputs::live(folder, {}));
+  Session session = open_session(options, std::move(inputs), 1, true);
+  RecordedRun run = record_run(session, {.file = request.file, .paced = request.paced});
+  if (run.loop.end != LoopEnd::done)
+    fail(static_cast<ErrorKind>(exit_code_of(run.loop.end)), "{}: {}", request.file,
+         run.loop.error.empty() ? run.summary.end : run.loop.error);
+  const Summary& s = run.summary;
+  reproduce::RunFigures figures{s.run_file,
+                                s.outcome,
+                                s.frames,
+                                s.collision_frames,
+                                s.overruns,
+                                s.collisions,
+                                s.cache_hits,
+                                s.cache_misses,
+                                s.null_misses,
+                                s.simulated_s,
+                                s.wall_s,
+                                std::move(run.loop.frame_ns),
+                                std::move(run.loop.collision_frame_ns),
+                                {}};
+  for (const Measure& m : s.measures) figures.measures.emplace_back(m.name, m.value);
+  return figures;
+}
+
+ordered_json json_of(const Figure& figure) {
+  if (const auto* words = std::get_if<std::string>(&figure)) return *words;
+  return std::get<double>(figure);
+}
+
+ordered_json json_of(const Row& row) {
+  const std::optional<double> q = ratio(row);
+  ordered_json j = {{"id", row.id},
+                    {"what", row.what},
+                    {"unit", row.unit},
+                    {"published", json_of(row.published)},
+                    {"here", json_of(row.here)},
+                    {"ratio", q ? ordered_json(*q) : ordered_json()},
+                    {"why", row.why},
+                    {"runs", row.runs}};
+  if (row.interval) j["interval_95"] = {row.interval->first, row.interval->second};
+  return j;
+}
+
+/// Every row, and every file that one of them comes from, once.
+std::string to_json(const std::vector<Row>& rows) {
+  ordered_json j = {{"rows", ordered_json::array()}, {"runs", ordered_json::array()}};
+  for (const Row& row : rows) {
+    j["rows"].push_back(json_of(row));
+    for (const std::string& file : row.runs)
+      if (std::find(j["runs"].begin(), j["runs"].end(), file) == j["runs"].end()) j["runs"].push_back(file);
+  }
+  return j.dump();
+}
+
+bool is_wanted(const Options& o, const Reproduction& r) {
+  return o.only.empty() || std::find(o.only.begin(), o.only.end(), r.id) != o.only.end();
+}
+
+void run_reproduce(const Options& o) {
+  using Clock = std::chrono::steady_clock;
+  reproduce::Workshop workshop{o.quick, o.out, {}};
+  const std::string scenarios = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
+  workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request); };
+  make_folder_of(workshop.file("any"));
+  std::vector<Row> rows;
+  for (const Reproduction& r : reproduce::reproductions()) {
+    if (!is_wanted(o, r)) continue;
+    if (!o.quiet) std::fprintf(stderr, "%-4s %-40s ", r.id, r.what);
+    const auto begin = Clock::now();
+    for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
+    if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", std::chrono::duration<double>(Clock::now() - begin).count());
+  }
+  std::printf("%s%s", o.json ? to_json(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
+}
+
+std::vector<std::string> ids() {
+  std::vector<std::string> all;
+  for (const Reproduction& r : reproduce::reproductions()) all.emplace_back(r.id);
+  return all;
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("reproduce", "Every figure that the dissertation reports, measured again");
+  auto o = std::make_shared<Options>();
+  command->add_option("-o,--out", o->out, "Folder for run files and tables")->capture_default_str();
+  command->add_option("--only", o->only, "Only these (repeatable): R7")->take_all()->check(CLI::IsMember(ids()));
+  command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");
+  command->add_flag("--quick", o->quick, "Shorter runs: under 45 s in all");
+  command->add_flag("--json", o->json, "One JSON object on stdout");
+  command->add_flag("--quiet", o->quiet, "No progress");
+  command->footer("Example: verisim reproduce --quick --only R7");
+  command->callback([=, &exit_code] {
+    run_reproduce(*o);
+    exit_code = 0;
+  });
+}
+
+}  // namespace verisim::cli

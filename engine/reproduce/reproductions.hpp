@@ -1,0 +1,27 @@
+// Every result of the dissertation that this program measures again (ORACLES section 1), in one list.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/reproduce/row.hpp"
+
+namespace verisim::reproduce {
+
+/// One result: measures and returns its rows. Error as of whatever it runs.
+struct Reproduction {
+  const char* id;
+  const char* what;  ///< a few words for progress and help
+  std::vector<Row> (*measure)(const Workshop&);
+};
+
+/// In the order in which they run and are printed.
+[[nodiscard]] std::span<const Reproduction> reproductions();
+
+// One file each.
+[[nodiscard]] std::vector<Row> r7_coverage(const Workshop& workshop);
+
+/// The rows as a table for a terminal: figures aligned, the reason below each.
+[[nodiscard]] std::string table_of(const std::vector<Row>& rows);
+
+}  // namespace verisim::reproduce

@@ -1,0 +1,64 @@
+// One figure that the dissertation reports, beside the same figure measured here, and what a measurement may use.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace verisim::reproduce {
+
+/// A number, or words where the result is none (R9: "does not assemble").
+using Figure = std::variant<double, std::string>;
+
+/// One line of the table. A result with several figures (an area and a volume) gives several rows with one id.
+struct Row {
+  std::string id;    ///< R1 ..., as ORACLES numbers them
+  std::string what;  ///< the figure, with its unit in `unit`
+  std::string unit;  ///< empty: a pure number or words
+  Figure published;
+  Figure here;
+  std::optional<std::pair<double, double>> interval;  ///< 95 % confidence interval of `here`
+  std::string why;                                    ///< why `here` is what it is, where it differs from `published`
+  std::vector<std::string> runs;                      ///< files made by this very measurement that `here` comes from
+};
+
+/// here / published; none unless both are numbers and published is not 0.
+[[nodiscard]] std::optional<double> ratio(const Row& row);
+
+/// One run of a scenario, as `verisim run` makes it.
+struct RunRequest {
+  std::string scenario;                                   ///< of the folder `scenarios`: "peg_in_hole"
+  std::string file;                                       ///< run file to write
+  std::vector<std::pair<std::string, std::string>> sets;  ///< parameters, as --set
+  std::optional<double> duration;                         ///< s
+  bool paced = false;                                     ///< by the wall clock
+};
+/// What came of it.
+struct RunFigures {
+  std::string run_file, outcome;
+  std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
+  std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
+  double simulated_s = 0, wall_s = 0;
+  std::vector<std::uint32_t> frame_ns;            ///< of every frame
+  std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
+  std::vector<std::pair<std::string, double>> measures;
+
+  /// A scenario's measure by name. Error(input) naming it if the run has none.
+  [[nodiscard]] double measure(const std::string& name) const;
+};
+
+/// What a measurement is given.
+struct Workshop {
+  bool quick = false;  ///< all results together in under 45 s on two cores
+  std::string folder;  ///< exists; every file of a measurement goes here
+  std::function<RunFigures(const RunRequest&)> run;
+
+  /// The path of a file in `folder`.
+  [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }
+};
+
+}  // namespace verisim::reproduce

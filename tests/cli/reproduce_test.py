@@ -1,0 +1,55 @@
+"""The dissertation's results on the command line (INTERFACES section 1, ORACLES section 1)."""
+import json
+import os
+import time
+import unittest
+
+from program import ProgramTest
+
+KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
+IDS = ["R7"]
+
+
+class Reproduce(ProgramTest):
+    def reproduce(self, *options):
+        done = self.succeed("reproduce", "--quick", "--json", *options)
+        return json.loads(done.stdout), done.stderr
+
+    def test_quick_measures_every_result_in_time_and_names_its_files(self):
+        start = time.monotonic()
+        report, progress = self.reproduce()
+        self.assertLess(time.monotonic() - start, 45 if not os.environ.get("VERISIM_SANITIZE") else 450)
+        self.assertEqual(sorted({row["id"] for row in report["rows"]}), sorted(IDS))
+        for row in report["rows"]:
+            self.assertLessEqual(KEYS, set(row), row["id"])
+            self.assertIn(row["id"], progress)
+            self.assertTrue(row["why"], f"{row['id']}: a difference without a reason")
+            self.assertTrue(row["runs"], f"{row['id']}: a figure from nowhere")
+            for file in row["runs"]:
+                self.assertTrue(os.path.getsize(self.path(file)), file)
+                self.assertIn(file, report["runs"])
+            if row["ratio"] is not None:
+                self.assertAlmostEqual(row["ratio"], row["here"] / row["published"], places=12)
+
+    def test_r7_count_agrees_with_the_area_and_not_with_the_volume_as_printed(self):
+        report, _ = self.reproduce("--only", "R7")
+        area, volume = report["rows"]
+        low, high = area["interval_95"]
+        self.assertAlmostEqual(area["published"], 0.637821 * 0.573491, places=6)  # coverage_test's worked number
+        self.assertLess(abs(area["here"] - area["published"]), high - low)
+        self.assertAlmostEqual(volume["published"], 1.0850727, places=6)
+        low, high = volume["interval_95"]
+        self.assertGreater(volume["published"] - high, high - low)
+
+    def test_table_has_a_line_for_every_figure(self):
+        table = self.succeed("reproduce", "--quick", "--only", "R7", "-o", self.path("here")).stdout
+        self.assertEqual(len([line for line in table.splitlines() if line.startswith("R7")]), 2, table)
+        self.assertTrue(os.path.exists(self.path("here/r7_coverage.csv")))
+
+    def test_refuses_what_it_does_not_know_or_cannot_write(self):
+        self.refuse(2, "R77", "reproduce", "--only", "R77")
+        self.refuse(5, "no/", "reproduce", "--quick", "--only", "R7", "-o", self.write("no", "") + "/")
+
+
+if __name__ == "__main__":
+    unittest.main()
