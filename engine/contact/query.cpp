@@ -15,32 +15,39 @@ namespace {
 /// the cell is outside A, else 0.
 ///
 /// In a brick with or next to one with surface voxels the layer itself is that number (at kBand + 1, a lower bound of
-/// it). If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And outside the grid by e cells,
-/// its border of one brick without surface adds 8.
+/// it). If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And a cell beyond the grid is at
+/// least as far as the grid's cell nearest to it.
 std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
   std::int32_t clamped[3];
-  std::int32_t excess = 0;
-  for (int i = 0; i < 3; ++i) {
-    clamped[i] = clamp_cell(cell[i], f.cell_max[i]);
-    excess = std::max(excess, std::abs(cell[i] - clamped[i]));
-  }
-  if (excess > 0) return excess + kBrickSide;
+  for (int i = 0; i < 3; ++i) clamped[i] = clamp_cell(cell[i], f.cell_max[i]);
   const Layer clearance = f.brick_clearance[brick_of(f, clamped)];
   if (clearance >= 2) return kBrickSide * (clearance - 1) + 1;
   return std::max<std::int32_t>(f.layers[slot_of(f, clamped)], 0);
 }
 
+/// The grid's border is one brick of outside: nothing beyond the inner box can be in contact. False for a centre that
+/// is not a number.
+bool meets_grid(const QueryFrame& f, const Center& g, double reach) {
+  const double low = kBrickSide - reach;
+  const double high = reach + 1 - kBrickSide;
+  return g.x > low && g.x < f.cell_max[0] + high && g.y > low && g.y < f.cell_max[1] + high && g.z > low &&
+         g.z < f.cell_max[2] + high;
+}
+
+/// All points of a cluster lie within `reach` voxels of its centre.
+double reach_of(const Pointshell::Cluster& cluster, double per_metre) {
+  constexpr double kRounding = 0x1p-10;  // voxel; of local coordinates (float) and of the radius; far above both
+  return cluster.radius * per_metre * (1 + kRounding) + kRounding;
+}
+
 /// True only if every point of the cluster certainly has a layer > 0.
 ///
-/// All points lie within `radius` of the centre, so their cells are at most `reach` = ceil(radius / voxel size) voxel
-/// steps from the centre's. Surface voxels are all that a triangle touches, so two neighbouring cells (by face, edge or
-/// corner) of which neither is one lie on the same side. If the centre's cell is outside and the nearest surface voxel
-/// more than `reach` steps away, no step on the way to any point's cell meets one: all are outside, layer > 0. A
-/// cluster deep inside is not culled: steps_to_surface is 0 there.
-bool surely_outside(const QueryFrame& f, const ClusterFrame& c, float radius, double per_metre) {
-  constexpr double kRounding = 0x1p-10;  // voxel; of local coordinates (float) and of the radius; far above both
-  const double reach = radius * per_metre * (1 + kRounding) + kRounding;
-  VERISIM_ASSERT(reach < 1 << 20);                  // local coordinates stay within the range of kIntegerMagic
+/// The points' cells are at most ceil(reach) voxel steps from the centre's. Surface voxels are all that a triangle
+/// touches, so two neighbouring cells (by face, edge or corner) of which neither is one lie on the same side. If the
+/// centre's cell is outside and the nearest surface voxel more than ceil(reach) steps away, no step on the way to any
+/// point's cell meets one: all are outside, layer > 0. A cluster deep inside is not culled: steps_to_surface is 0
+/// there.
+bool surely_outside(const QueryFrame& f, const ClusterFrame& c, double reach) {
   return steps_to_surface(f, c.base) - 1 >= reach;  // more steps than ceil(reach), as both sides of it are whole
 }
 
@@ -66,8 +73,13 @@ void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& 
   std::array<ClusterFrame, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
   std::size_t filled = 0;
   for (const Pointshell::Cluster& cluster : b.clusters) {
-    place(frame, cluster, batch[filled]);
-    if (surely_outside(frame, batch[filled], cluster.radius, per_metre)) continue;
+    const Center center = center_of(frame, cluster);
+    const double reach = reach_of(cluster, per_metre);
+    if (!meets_grid(frame, center, reach)) continue;
+    place(cluster, center, batch[filled]);
+    if (surely_outside(frame, batch[filled], reach)) continue;
+    batch[filled].near = reach <= kBrickSide;
+    VERISIM_ASSERT(reach < 1 << 20);  // local coordinates stay within the range of kRounder
     VERISIM_ASSERT(cluster.end - cluster.begin <= static_cast<std::uint32_t>(kBrickCells));
     cost.points += cluster.end - cluster.begin;
     if (++filled < batch.size()) continue;
@@ -84,7 +96,7 @@ void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, Conta
   const QueryFrame f = make_query_frame(a, b, X_AB);
   for (const Pointshell::Cluster& cluster : b.clusters) {
     ClusterFrame c;
-    place(f, cluster, c);
+    place(cluster, center_of(f, cluster), c);
     for (std::uint32_t i = c.begin; i < c.end; ++i) {
       const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);
       if (p.layer > 0) continue;
@@ -98,9 +110,9 @@ void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, Conta
       const std::uint32_t k = contacts.size++;
       contacts.point[k] = i;
       contacts.slot[k] = p.slot;
-      contacts.x[k] = (static_cast<float>(c.base[0]) + p.local[0]) * f.voxel_size;
-      contacts.y[k] = (static_cast<float>(c.base[1]) + p.local[1]) * f.voxel_size;
-      contacts.z[k] = (static_cast<float>(c.base[2]) + p.local[2]) * f.voxel_size;
+      contacts.x[k] = coordinate(f, c.base[0], p.local[0]);
+      contacts.y[k] = coordinate(f, c.base[1], p.local[1]);
+      contacts.z[k] = coordinate(f, c.base[2], p.local[2]);
       contacts.nx[k] = n[0];
       contacts.ny[k] = n[1];
       contacts.nz[k] = n[2];

@@ -1,8 +1,10 @@
 // The arithmetic of a query, defined once: where a cluster and a point lie in A's grid, which voxel that is and how
 // deep. Private to this folder. Scalar; query_simd.cpp repeats `locate` and `depth_of` lane by lane in the same order.
 //
-// All coordinates are A's grid coordinates (voxels), split as base + local: `base` is the cell of the cluster's centre
-// (integer), `local` the rest (float, a few voxels), so nothing is lost to the size of a part.
+// All coordinates are A's grid coordinates (voxels), split as base + 1/2 + local: `base` is the cell of the cluster's
+// centre (integer), `local` the way from that cell's centre (float, a few voxels), so nothing is lost to the size of a
+// part, and the nearest integer to `local` leads to the centre of the point's own voxel. A point exactly on the wall
+// between two voxels is given to one of them by the rounding of ties, the same one everywhere.
 #pragma once
 
 #include <bit>
@@ -22,6 +24,7 @@ struct QueryFrame {
   float voxel_size;          ///< m
   std::int32_t cell_max[3];  ///< last cell along each axis
   std::int32_t row, slice;   ///< bricks along x; bricks in an xy slice
+  std::int32_t bricks[3];    ///< along each axis
   const std::uint32_t* brick_block;
   const Layer* brick_clearance;
   const Layer* layers;
@@ -31,17 +34,23 @@ struct QueryFrame {
 struct ClusterFrame {
   float center[3];           ///< m, relative to the pointshell's reference
   std::int32_t base[3];      ///< cell of the centre
-  float fraction[3];         ///< centre within that cell, in [0, 1]
+  std::int32_t corner[3];    ///< first cell of the 3 x 3 x 3 bricks around it
+  float local[3];            ///< the centre itself, in [-1/2, 1/2]
+  float rounder[3];          ///< kRounder + base - corner
   std::uint32_t begin, end;  ///< its points
+  bool near;                 ///< do all points lie within kBrickSide cells of the base?
 };
 
-/// Adding it to an integer |i| < 2^22 leaves i in the low bits of the float: a conversion that is one addition.
-inline constexpr float kIntegerMagic = 0x1.8p23F;
-inline constexpr std::int32_t kIntegerMagicBits = 0x4B400000;
+/// Added to a float below 2^22 in size it leaves the nearest integer in the sum's low bits, and taken off again, as a
+/// float: rounding and conversion in one addition, the same on every target. Added with a whole number, it leaves that
+/// much more in the bits.
+inline constexpr float kRounder = 0x1.8p23F;
+inline constexpr std::int32_t kRounderBits = 0x4B400000;
 
 /// A point in A's grid.
 struct PointLocation {
-  float local[3];      ///< relative to the cluster's base cell
+  float local[3];      ///< from the centre of the cluster's base cell
+  float to_center[3];  ///< from here to the centre of its own cell
   std::uint32_t slot;  ///< block * 512 + cell in brick, of the cell clamped to the grid
   Layer layer;
 };
@@ -58,6 +67,7 @@ inline QueryFrame make_query_frame(const Voxmap& a, const Pointshell& b, const P
       f.rotation[3 * i + j] = static_cast<float>(R(i, j));
     }
     f.origin[i] = origin[i];
+    f.bricks[i] = a.bricks[i];
     f.cell_max[i] = a.bricks[i] * kBrickSide - 1;
   }
   f.voxel_size = static_cast<float>(a.voxel_size);
@@ -78,19 +88,35 @@ inline std::int32_t floor_limited(double g) {
   return truncated - static_cast<std::int32_t>(static_cast<double>(truncated) > limited);
 }
 
-/// Written in place: a returned struct would be copied in wide loads of narrow stores, which the CPU has to wait for.
-inline void place(const QueryFrame& f, const Pointshell::Cluster& cluster, ClusterFrame& c) {
+/// Centre of a cluster [voxel].
+struct Center {
+  double x, y, z;
+};
+
+inline Center center_of(const QueryFrame& f, const Pointshell::Cluster& cluster) {
   const double x = cluster.center.x();
   const double y = cluster.center.y();
   const double z = cluster.center.z();
-  for (int i = 0; i < 3; ++i) {
-    const double g = f.centers[3 * i] * x + f.centers[3 * i + 1] * y + f.centers[3 * i + 2] * z + f.origin[i];
-    c.center[i] = cluster.center[i];
-    c.base[i] = floor_limited(g);
-    const double fraction = g - c.base[i];
-    c.fraction[i] =
-        fraction >= 0 && fraction <= 1 ? static_cast<float>(fraction) : 0.0F;  // beyond the limits: anything
-  }
+  const double* m = f.centers;
+  return {m[0] * x + m[1] * y + m[2] * z + f.origin[0], m[3] * x + m[4] * y + m[5] * z + f.origin[1],
+          m[6] * x + m[7] * y + m[8] * z + f.origin[2]};
+}
+
+/// Along axis i; g: the centre [voxel].
+inline void place_axis(double g, int i, ClusterFrame& c) {
+  c.base[i] = floor_limited(g);
+  c.corner[i] = ((c.base[i] >> kBrickShift) - 1) * kBrickSide;
+  c.rounder[i] = kRounder + static_cast<float>(c.base[i] - c.corner[i]);
+  const double local = g - c.base[i] - 0.5;
+  c.local[i] = std::abs(local) <= 0.5 ? static_cast<float>(local) : 0.0F;  // beyond the limits: anything
+}
+
+/// Written in place: a returned struct would be copied in wide loads of narrow stores, which the CPU has to wait for.
+inline void place(const Pointshell::Cluster& cluster, const Center& center, ClusterFrame& c) {
+  for (int i = 0; i < 3; ++i) c.center[i] = cluster.center[i];
+  place_axis(center.x, 0, c);
+  place_axis(center.y, 1, c);
+  place_axis(center.z, 2, c);
   c.begin = cluster.begin;
   c.end = cluster.end;
 }
@@ -115,9 +141,10 @@ inline PointLocation locate(const QueryFrame& f, const ClusterFrame& c, float x,
   const float dz = z - c.center[2];
   std::int32_t cell[3];
   for (int i = 0; i < 3; ++i) {
-    p.local[i] = f.voxels[3 * i] * dx + f.voxels[3 * i + 1] * dy + f.voxels[3 * i + 2] * dz + c.fraction[i];
-    const auto bits = std::bit_cast<std::int32_t>(std::floor(p.local[i]) + kIntegerMagic);
-    cell[i] = clamp_cell(bits + (c.base[i] - kIntegerMagicBits), f.cell_max[i]);
+    p.local[i] = f.voxels[3 * i] * dx + f.voxels[3 * i + 1] * dy + f.voxels[3 * i + 2] * dz + c.local[i];
+    const float rounded = p.local[i] + c.rounder[i];
+    p.to_center[i] = (rounded - c.rounder[i]) - p.local[i];
+    cell[i] = clamp_cell(std::bit_cast<std::int32_t>(rounded) - kRounderBits + c.corner[i], f.cell_max[i]);
   }
   p.slot = slot_of(f, cell);
   p.layer = f.layers[p.slot];
@@ -126,11 +153,13 @@ inline PointLocation locate(const QueryFrame& f, const ClusterFrame& c, float x,
 
 /// Depth of a point in a voxel of layer <= 0 along the normal (nx, ny, nz), A's axes [m]; see query.hpp.
 inline float depth_of(const QueryFrame& f, const PointLocation& p, float nx, float ny, float nz) {
-  const float to_center_x = 0.5F - (p.local[0] - std::floor(p.local[0]));
-  const float to_center_y = 0.5F - (p.local[1] - std::floor(p.local[1]));
-  const float to_center_z = 0.5F - (p.local[2] - std::floor(p.local[2]));
-  const float along = to_center_x * nx + to_center_y * ny + to_center_z * nz;
+  const float along = p.to_center[0] * nx + p.to_center[1] * ny + p.to_center[2] * nz;
   return (along - static_cast<float>(p.layer)) * f.voxel_size;
+}
+
+/// Coordinate of a point from A's grid origin along one axis [m].
+inline float coordinate(const QueryFrame& f, std::int32_t base, float local) {
+  return ((static_cast<float>(base) + 0.5F) + local) * f.voxel_size;
 }
 
 }  // namespace verisim

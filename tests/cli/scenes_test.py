@@ -77,11 +77,11 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "8ac2d3491ac04a50"),
-    ("peg_in_hole_step", ["--duration", "3"], "4c31489d103a2ff9"),
+    ("peg_in_hole", ["--duration", "3"], "f23ebc717e6c88f4"),
+    ("peg_in_hole_step", ["--duration", "3"], "cc4ddd266b58443d"),
     ("head_tracking", [], "76d46232c8b61ff9"),
-    ("slide", [], "a445a3bb3647986d"),
-    ("stack", [], "61b2972e63c21265"),
+    ("slide", [], "45c9931769c9894e"),
+    ("stack", [], "8230578803899852"),
 ]
 
 if __name__ == "__main__":

@@ -37,10 +37,10 @@ struct Golden {
 };
 
 const std::map<std::string, Golden> kGolden = {
-    {"pin_in_hole", {"976de979b77bc2bf", 735}},
-    {"pin_in_hole_implicit", {"5b19f4d583df19f7", 729}},
-    {"falling_boxes", {"7424e456a62909d0", 440}},
-    {"falling_boxes_implicit", {"2977c92cf703ab78", 440}},
+    {"pin_in_hole", {"cc7f2514b8a857b4", 735}},
+    {"pin_in_hole_implicit", {"e622b28d5f9478de", 729}},
+    {"falling_boxes", {"89e96cf0cda6ee07", 440}},
+    {"falling_boxes_implicit", {"a6d2ed6fed2b64b8", 440}},
 };
 
 TEST(SameBits, AsWhenTheGoldenHashesWereWritten) {
