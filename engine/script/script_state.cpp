@@ -55,6 +55,7 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
   add_scene_words(L);
   add_node_words(L);
   add_body_words(L);
+  add_brep_words(L);
   add_device_words(L);
   add_wii_words(L);
   add_simulation_words(L);
@@ -78,6 +79,7 @@ int ScriptState::run_file(lua_State* L, const std::string& file) {
 
 void ScriptState::finish() {
   check_sets();
+  declaring.clear();
   if (options.seed) scene.parameters.seed = *options.seed;
   if (options.duration) scene.parameters.duration = options.duration;
   name_devices();

@@ -17,6 +17,7 @@
 #include "engine/script/frame_actions.hpp"
 #include "engine/script/sandbox.hpp"
 #include "engine/script/scenario.hpp"
+#include "engine/simulation/declaring.hpp"
 #include "engine/wii/head.hpp"
 
 namespace verisim::script {
@@ -126,7 +127,8 @@ class ScriptState : public Sandbox {
   bool finished = false;
   std::vector<Measure> measures;
   std::vector<std::string> notices;
-  std::vector<double> masses;  ///< of described bodies, kg
+  std::vector<double> masses;                  ///< of described bodies, kg
+  std::map<std::size_t, Declaring> declaring;  ///< bodies whose voxels the script goes through; until finish()
 
   /// Index in scene.devices of the chain that `node` is part of. Error(input) if it was never added.
   [[nodiscard]] std::size_t device_index(const DeviceNode& node) const;
@@ -164,6 +166,7 @@ void add_parameter_words(lua_State* L);   ///< params, mm, deg, outcome, measure
 void add_scene_words(lua_State* L);       ///< defineSimulationParameters, addObject
 void add_node_words(lua_State* L);        ///< Model, modelParts, Transform, Group, MatrixTransform, Solid
 void add_body_words(lua_State* L);        ///< what addObject returns
+void add_brep_words(lua_State* L);        ///< FeatureSet, BoundaryFeature, Plane, Cylinder …
 void add_device_words(lua_State* L);      ///< Devices, filters, addDevice, grasp
 void add_wii_words(lua_State* L);         ///< WiiHead
 void add_simulation_words(lua_State* L);  ///< simulation, CollisionCounter
@@ -172,5 +175,8 @@ void add_file_words(lua_State* L);        ///< require, dofile, runfile, vrjLua
 void add_vector_words(lua_State* L);      ///< osg.Vec3, osg.Quat, AngleAxis, Axis, Degrees, Vec …
 void add_matrix_words(lua_State* L);      ///< osg.Matrix
 void add_drawing_words(lua_State* L);     ///< what only draws or sounds; last, so that it replaces nothing
+
+/// Of a body, to the table on top of the stack: foreachSurfaceVoxel, addFeatureSet, getFeatureSet.
+void add_declaring_methods(lua_State* L);
 
 }  // namespace verisim::script

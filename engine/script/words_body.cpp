@@ -148,7 +148,8 @@ int body_member(lua_State* L) {
   }
   lua_getfield(L, lua_upvalueindex(1), name.c_str());
   if (!lua_isnil(L, -1)) return 1;
-  std::vector<std::string> known = {"setPosition", "setOrientation", "setHybridEnabled"};
+  std::vector<std::string> known = {"setPosition",         "setOrientation", "setHybridEnabled",
+                                    "foreachSurfaceVoxel", "addFeatureSet",  "getFeatureSet"};
   for (const Member& member : kMembers) known.emplace_back(member.name);
   raise(L, "a body has no '{}'{}", name, suggestion(name, known));
 }
@@ -206,6 +207,7 @@ void add_body_words(lua_State* L) {
   set_function<set_position>(L, "setPosition");
   set_function<set_orientation>(L, "setOrientation");
   set_function<set_hybrid_enabled>(L, "setHybridEnabled");
+  add_declaring_methods(L);
   lua_pushcclosure(L, guarded<body_member>, 1);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);

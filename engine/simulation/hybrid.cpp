@@ -27,9 +27,9 @@ bool all_faces_known(const Body& body) {
 
 void Simulation::Implementation::make_hybrid(const BodyDescription& description, Body& body) {
   const BodyFeatures& features = body.voxels->features;
-  if (features.faces.empty()) return;
+  if (features.entity_count() == 0) return;
   body.entities = std::make_unique<EntitySets>(features.faces, features.edges, features.sets);
-  if (body.hybrid != Hybrid::exact) return;
+  if (body.hybrid != Hybrid::exact || !description.use_brep) return;
   exact::BodyOptions options;
   options.spacing = description.voxel_size;
   auto precise = std::make_shared<exact::ExactBody>(description.parts, options);

@@ -12,6 +12,7 @@
 #include "engine/constraint/reduction.hpp"
 #include "engine/device/device.hpp"
 #include "engine/geometry/part.hpp"
+#include "engine/voxel/declared_features.hpp"
 
 namespace verisim {
 
@@ -52,10 +53,11 @@ struct BodyDescription {
   double point_spacing = 0;  ///< m; 0: one point per surface voxel
   bool fixed = false;
   bool selectable = true;
-  bool use_brep = true;          ///< brep=: hybrid methods may use its entities
-  std::optional<Hybrid> hybrid;  ///< none: the simulation's
-  bool hybrid_enabled = true;    ///< may be switched during the run (setHybridEnabled)
-  Twist twist;                   ///< start velocity
+  bool use_brep = true;                        ///< brep=: hybrid methods may use its parts' entities
+  std::shared_ptr<DeclaredFeatures> declared;  ///< entities declared by hand, brep= or not; null: none
+  std::optional<Hybrid> hybrid;                ///< none: the simulation's
+  bool hybrid_enabled = true;                  ///< may be switched during the run (setHybridEnabled)
+  Twist twist;                                 ///< start velocity
 };
 
 /// grasp(device, body): holds from the first frame, whatever the button says. Indices into Scene.

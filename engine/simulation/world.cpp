@@ -45,6 +45,12 @@ double distance(const Bounds& a, const Bounds& b) {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
 }
 
+void forget_brep(Part& part) {
+  part.faces.clear();
+  part.edges.clear();
+  part.mesh.face_of_triangle.clear();
+}
+
 Bounds in_world(const Bounds& bounds_B, const Pose& X_WB) {
   Bounds world;
   for (int corner = 0; corner < 8; ++corner)
@@ -142,10 +148,11 @@ void Simulation::Implementation::voxelize_bodies(const Scene& scene) {
     options.voxel_size = description.voxel_size;
     options.point_spacing = description.point_spacing;
     options.threads = threads;
-    const Part part = merged(description.parts);
+    Part part = merged(description.parts);
+    if (!description.use_brep) forget_brep(part);
     auto voxels = std::make_shared<VoxelBody>(voxelize(description.name, part.mesh, options));
-    if (bodies[i].hybrid != Hybrid::off && description.use_brep && part.has_brep())
-      associate(description.name, part, {.threads = threads}, *voxels);
+    if (bodies[i].hybrid != Hybrid::off && (part.has_brep() || description.declared))
+      associate(description.name, part, {.threads = threads, .declared = description.declared.get()}, *voxels);
     bodies[i].voxels = std::move(voxels);
     make_hybrid(description, bodies[i]);
   }

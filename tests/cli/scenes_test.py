@@ -70,6 +70,13 @@ class Scenes(ProgramTest):
         self.assertEqual(s["outcome"], "tracked")
         self.assertGreater(s["measures"]["head_known"]["value"], 0.99)
 
+    def test_entities_declared_by_hand_do_what_those_of_the_solids_do(self):
+        by_hand, solid = (self.scene("declared", "--set", "by=" + by) for by in ("hand", "solid"))
+        self.assertEqual(by_hand["outcome"], "inserted")
+        self.assertGreater(by_hand["constraints"]["cylindrical"], 1000)
+        for fact in ("constraints", "collision_frames", "state_hash"):
+            self.assertEqual(by_hand[fact], solid[fact], fact)
+
     def test_golden_hashes(self):
         for name, options, golden in GOLDEN:
             summary = self.scene(name, *options)
