@@ -47,6 +47,7 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
   LoopOptions loop;
   loop.frames = simulation.frames_planned();
   loop.paced = options.paced;
+  loop.empty_block = options.empty_block;
   loop.finished = [&] { return session.scenario->finished(); };
   loop.progress = progress_bar(loop.frames, options.progress);
   RecordedRun run;

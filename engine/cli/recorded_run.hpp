@@ -8,9 +8,10 @@
 namespace verisim::cli {
 
 struct RecordOptions {
-  std::string file;    ///< run file to write; its folder is made
-  bool paced = false;  ///< by the wall clock
-  bool embed = true;   ///< the content of every input goes into the run file
+  std::string file;               ///< run file to write; its folder is made
+  bool paced = false;             ///< by the wall clock
+  std::uint64_t empty_block = 0;  ///< as in LoopOptions
+  bool embed = true;              ///< the content of every input goes into the run file
   bool progress = false;
 };
 

@@ -42,9 +42,11 @@ reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::R
   options.path = (fs::path(folder) / (request.scenario + ".lua")).string();
   options.sets = request.sets;
   options.duration = request.duration;
+  options.seed = request.seed;
   auto inputs = std::make_unique<Inputs>(Inputs::live(folder, {}));
   Session session = open_session(options, std::move(inputs), 1, true);
-  RecordedRun run = record_run(session, {.file = request.file, .paced = request.paced});
+  RecordedRun run =
+      record_run(session, {.file = request.file, .paced = request.paced, .empty_block = request.empty_block});
   if (run.loop.end != LoopEnd::done)
     fail(static_cast<ErrorKind>(exit_code_of(run.loop.end)), "{}: {}", request.file,
          run.loop.error.empty() ? run.summary.end : run.loop.error);
@@ -62,7 +64,12 @@ reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::R
                                 s.wall_s,
                                 std::move(run.loop.frame_ns),
                                 std::move(run.loop.collision_frame_ns),
-                                {}};
+                                {},
+                                std::move(run.loop.block_overruns),
+                                std::move(run.loop.empty_block_overruns),
+                                s.force_max,
+                                s.penetration_max,
+                                s.state_hash};
   for (const Measure& m : s.measures) figures.measures.emplace_back(m.name, m.value);
   return figures;
 }

@@ -63,6 +63,57 @@ void record(Simulation& simulation, Recorder& recorder, std::size_t offset, cons
   for (const Event& event : simulation.events()) recorder.event(event.time, event.kind, event.text);
 }
 
+/// The wall clock's schedule: when each frame starts if the loop is paced, and which periods were too long.
+class Pace {
+ public:
+  Pace(double dt, bool paced)
+      : dt_(std::llround(dt * 1e9)), paced_(paced), next_(Clock::now()), last_start_(next_ - dt_) {}
+
+  /// Waits for the next frame's time if paced. Returns when it starts; `period()` is the time since the one before.
+  Clock::time_point wait() {
+    if (paced_) std::this_thread::sleep_until(next_);
+    next_ += dt_;
+    const Clock::time_point begin = Clock::now();
+    period_ = begin - last_start_;
+    last_start_ = begin;
+    return begin;
+  }
+  [[nodiscard]] Clock::duration period() const { return period_; }
+  [[nodiscard]] bool too_long(Clock::duration time) const { return time > dt_ + dt_ / 2; }
+
+ private:
+  std::chrono::nanoseconds dt_;
+  bool paced_;
+  Clock::time_point next_, last_start_;
+  Clock::duration period_{};
+};
+
+/// Counts overruns block by block, and lets an empty block follow each.
+class Blocks {
+ public:
+  Blocks(const LoopOptions& options, LoopResult& result)
+      : frames_(options.paced ? options.empty_block : 0), result_(result) {
+    if (frames_ == 0) return;
+    result.block_overruns.reserve(options.frames / frames_);
+    result.empty_block_overruns.reserve(options.frames / frames_);
+  }
+  void after_frame(std::uint64_t frames_done, Pace& pace) {
+    if (frames_ == 0 || frames_done % frames_ != 0) return;
+    result_.block_overruns.push_back(static_cast<std::uint32_t>(result_.overruns - counted_));
+    counted_ = result_.overruns;
+    std::uint32_t empty = 0;
+    for (std::uint64_t i = 0; i < frames_ && interrupted == 0; ++i) {
+      pace.wait();
+      empty += pace.too_long(pace.period()) ? 1 : 0;
+    }
+    result_.empty_block_overruns.push_back(empty);
+  }
+
+ private:
+  std::uint64_t frames_, counted_ = 0;
+  LoopResult& result_;
+};
+
 }  // namespace
 
 void catch_interrupts() {
@@ -89,20 +140,17 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& sc
   result.frame_ns.reserve(options.frames);
   result.collision_frame_ns.reserve(options.frames);
   const std::size_t offset = recorder != nullptr ? timing_offset(schema) : 0;
-  const auto dt = std::chrono::nanoseconds(std::llround(simulation.dt() * 1e9));
-  const auto limit = dt + dt / 2;
+  Blocks blocks(options, result);
   const Clock::time_point start = Clock::now();
-  Clock::time_point last_start = start - dt;
   Clock::time_point last_progress = start;
+  Pace pace(simulation.dt(), options.paced);
   try {
     for (std::uint64_t i = 0; i < options.frames && interrupted == 0; ++i) {
-      if (options.paced) std::this_thread::sleep_until(start + dt * static_cast<std::int64_t>(i));
-      const Clock::time_point begin = Clock::now();
+      const Clock::time_point begin = pace.wait();
       simulation.step();
       const Clock::time_point end = Clock::now();
-      const Timing timing{clamped_ns(end - begin), simulation.stage_ns(), clamped_ns(begin - last_start),
-                          static_cast<std::uint8_t>((options.paced ? begin - last_start : end - begin) > limit)};
-      last_start = begin;
+      const Timing timing{clamped_ns(end - begin), simulation.stage_ns(), clamped_ns(pace.period()),
+                          static_cast<std::uint8_t>(pace.too_long(options.paced ? pace.period() : end - begin))};
       result.overruns += timing.overrun;
       result.frame_ns.push_back(timing.frame_ns);
       if (simulation.cost().contacts > 0) result.collision_frame_ns.push_back(timing.frame_ns);
@@ -113,6 +161,7 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& sc
         last_progress = end;
       }
       if (options.finished && options.finished()) break;
+      blocks.after_frame(i + 1, pace);
     }
     if (interrupted != 0) result.end = LoopEnd::interrupted;
   } catch (const Error& error) {

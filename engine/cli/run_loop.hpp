@@ -13,6 +13,8 @@ namespace verisim::cli {
 struct LoopOptions {
   std::uint64_t frames = 0;
   bool paced = false;                           ///< wait for the wall clock before each frame
+  std::uint64_t empty_block = 0;                ///< paced, > 0: after every so many frames as many of a loop that does
+                                                ///< nothing, to see what the machine alone does to periods
   std::function<bool()> finished;               ///< asked after every frame: the scenario may end early
   std::function<void(std::uint64_t)> progress;  ///< told frames done, about five times a second; may be empty
 };
@@ -23,9 +25,11 @@ struct LoopResult {
   LoopEnd end = LoopEnd::done;
   std::string error;  ///< for diverged and io_failed
   std::uint64_t overruns = 0;
-  std::vector<std::uint32_t> frame_ns;            ///< of every frame
-  std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
-  double wall_s = 0;                              ///< first frame to the last row handed over
+  std::vector<std::uint32_t> block_overruns;        ///< of each whole block of frames, if there are empty ones between
+  std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block behind each
+  std::vector<std::uint32_t> frame_ns;              ///< of every frame
+  std::vector<std::uint32_t> collision_frame_ns;    ///< of the frames with contact
+  double wall_s = 0;                                ///< first frame to the last row handed over
 };
 
 /// Adds the /timing columns behind the simulation's own.

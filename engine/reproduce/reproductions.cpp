@@ -6,7 +6,11 @@ namespace verisim::reproduce {
 
 std::span<const Reproduction> reproductions() {
   static constexpr std::array kAll = {
+      Reproduction{"R1", "overruns of the paced trial", &r1_overruns},
+      Reproduction{"R2", "passes with and without restoration", &r2_passes},
+      Reproduction{"R3", "collisions and cache misses", &r3_collisions},
       Reproduction{"R7", "trackable area and volume", &r7_coverage},
+      Reproduction{"R9", "parts whose constraints conflict", &r9_conflicts},
   };
   return kAll;
 }

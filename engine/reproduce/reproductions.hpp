@@ -19,7 +19,11 @@ struct Reproduction {
 [[nodiscard]] std::span<const Reproduction> reproductions();
 
 // One file each.
+[[nodiscard]] std::vector<Row> r1_overruns(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r2_passes(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r3_collisions(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r7_coverage(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r9_conflicts(const Workshop& workshop);
 
 /// The rows as a table for a terminal: figures aligned, the reason below each.
 [[nodiscard]] std::string table_of(const std::vector<Row>& rows);

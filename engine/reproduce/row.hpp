@@ -31,11 +31,13 @@ struct Row {
 
 /// One run of a scenario, as `verisim run` makes it.
 struct RunRequest {
-  std::string scenario;                                   ///< of the folder `scenarios`: "peg_in_hole"
-  std::string file;                                       ///< run file to write
-  std::vector<std::pair<std::string, std::string>> sets;  ///< parameters, as --set
-  std::optional<double> duration;                         ///< s
-  bool paced = false;                                     ///< by the wall clock
+  std::string scenario;                                     ///< of the folder `scenarios`: "peg_in_hole"
+  std::string file;                                         ///< run file to write
+  std::vector<std::pair<std::string, std::string>> sets{};  ///< parameters, as --set
+  std::optional<double> duration{};                         ///< s
+  std::optional<std::uint64_t> seed{};
+  bool paced = false;             ///< by the wall clock
+  std::uint64_t empty_block = 0;  ///< paced: after every so many frames as many of a loop that does nothing
 };
 /// What came of it.
 struct RunFigures {
@@ -46,6 +48,10 @@ struct RunFigures {
   std::vector<std::uint32_t> frame_ns;            ///< of every frame
   std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
   std::vector<std::pair<std::string, double>> measures;
+  std::vector<std::uint32_t> block_overruns, empty_block_overruns;  ///< of each block, and of the empty one behind it
+  double force_max = 0;                                             ///< N
+  double penetration_max = 0;                                       ///< m
+  std::string state_hash;
 
   /// A scenario's measure by name. Error(input) naming it if the run has none.
   [[nodiscard]] double measure(const std::string& name) const;

@@ -7,7 +7,7 @@ import unittest
 from program import ProgramTest
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-IDS = ["R7"]
+IDS = ["R1", "R2", "R3", "R7", "R9"]
 
 
 class Reproduce(ProgramTest):

@@ -1,0 +1,85 @@
+// R1: how often the paced loop misses its millisecond in the dissertation's trial (section 8.5), and how much of that
+// is the machine's own doing: blocks of one second alternate with an empty paced loop.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/reproduce/reproductions.hpp"
+#include "engine/reproduce/statistics.hpp"
+
+namespace verisim::reproduce {
+namespace {
+
+constexpr std::uint64_t kBlock = 1000;            ///< frames: one second
+constexpr std::uint32_t kTooLong_ns = 1'500'000;  ///< 1.5 periods, as the dissertation counts them
+
+std::vector<double> shares(const std::vector<std::uint32_t>& counts) {
+  std::vector<double> result;
+  for (const std::uint32_t count : counts) result.push_back(count / static_cast<double>(kBlock));
+  return result;
+}
+
+}  // namespace
+
+std::vector<Row> r1_overruns(const Workshop& workshop) {
+  const std::string file = workshop.file("r1_paced.h5");
+  RunRequest request{
+      .scenario = "peg_in_hole", .file = file, .sets = {{"hybrid", "restore"}}, .paced = true, .empty_block = kBlock};
+  if (workshop.quick) request.duration = 4;
+  const RunFigures run = workshop.run(request);
+  const std::vector<double> loaded = shares(run.block_overruns);
+  const std::vector<double> empty = shares(run.empty_block_overruns);
+  if (loaded.size() < 2 || loaded.size() != empty.size())
+    fail(ErrorKind::interrupted, "{}: the paced run ended before two blocks were done", file);
+  std::vector<double> more;
+  for (std::size_t i = 0; i < loaded.size(); ++i) more.push_back(loaded[i] - empty[i]);
+  const Estimate share = mean_of(loaded);
+  const Estimate idle = mean_of(empty);
+  const Estimate difference = mean_of(more);
+  const bool shows = difference.interval.first > 0;
+  const auto slow = static_cast<double>(
+      std::count_if(run.frame_ns.begin(), run.frame_ns.end(), [](std::uint32_t ns) { return ns > kTooLong_ns; }));
+  const auto frames = static_cast<double>(run.frames);
+  return {
+      {"R1",
+       "frames of the trial",
+       "",
+       45833.0,
+       frames,
+       {},
+       workshop.quick ? "shortened by --quick" : "the same duration",
+       {file}},
+      {"R1",
+       "frames with collision",
+       "",
+       11053.0,
+       static_cast<double>(run.collision_frames),
+       {},
+       "another operator: he touches the wall more often",
+       {file}},
+      {"R1",
+       "periods over 1.5 ms, of all frames",
+       "%",
+       0.124,
+       100 * share.value,
+       std::pair(100 * share.interval.first, 100 * share.interval.second),
+       fmt::format("an empty paced loop on this machine, second by second in turn: {:.3g} % [{:.3g}, {:.3g}]; the "
+                   "difference {:+.3g} % [{:+.3g}, {:+.3g}] is {}",
+                   100 * idle.value, 100 * idle.interval.first, 100 * idle.interval.second, 100 * difference.value,
+                   100 * difference.interval.first, 100 * difference.interval.second,
+                   shows ? "beyond its own 95 % interval" : "within its own 95 % interval"),
+       {file}},
+      {"R1",
+       "frames computed in over 1.5 ms",
+       "%",
+       "not reported",
+       100 * slow / frames,
+       {},
+       fmt::format("the slowest frame took {:.0f} us",
+                   *std::max_element(run.frame_ns.begin(), run.frame_ns.end()) / 1e3),
+       {file}},
+  };
+}
+
+}  // namespace verisim::reproduce

@@ -1,0 +1,21 @@
+// Means of few samples and how sure they are. Sums run in the order of the samples.
+#pragma once
+
+#include <span>
+#include <utility>
+
+namespace verisim::reproduce {
+
+struct Estimate {
+  double value = 0;
+  std::pair<double, double> interval{};  ///< 95 % confidence (Student's t)
+};
+
+/// Mean of at least two samples. Assertion otherwise.
+[[nodiscard]] Estimate mean_of(std::span<const double> samples);
+
+/// sum(a) / sum(b) of at least two pairs that belong together, with the interval of the linearized ratio. Not a number
+/// if sum(b) is 0.
+[[nodiscard]] Estimate ratio_of(std::span<const double> a, std::span<const double> b);
+
+}  // namespace verisim::reproduce
