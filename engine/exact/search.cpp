@@ -8,6 +8,11 @@ namespace {
 // A contact whose normal leans away from all that the mover can touch with fades out between these sines.
 constexpr double kLeanFree = 0.42;  // 25 degrees
 constexpr double kLeanNone = 0.64;  // 40 degrees
+// A ball that a curve carries is the body's boundary where it touches the face it belongs to; elsewhere it is within
+// the body. Contacts fade out between these distances of their place from the face: a segment's end, where the nearest
+// place lies in the next segment, shall not stand for it.
+constexpr double kOwnFree = 1e-7;  // m
+constexpr double kOwnNone = 1e-6;
 
 /// A feature in the coordinates of the base.
 struct PlacedFeature {
@@ -30,6 +35,7 @@ struct Candidate {
   double gap = 0;
   Vector3d normal;
   double edge_share = 0;  ///< 0: against a face, up to 1: against the middle of an edge's fold
+  double weight = 1;      ///< less where the place is not the mover's boundary
 };
 
 std::uint32_t across(const ExactEdge& edge, std::uint32_t face) {
@@ -171,7 +177,7 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
     found = true;
   }
   if (found)
-    add(best, feature, lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(nearest.size()), face);
+    add(best, feature, best.weight * lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(nearest.size()), face);
 }
 
 Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const {
@@ -194,8 +200,10 @@ bool Search::admit(const PlacedFeature& placed, std::uint32_t face, Candidate& c
   const Feature& feature = *placed.feature;
   const Vector3d foot = c.p - c.at.distance * c.at.normal;
   if (feature.own_face != kNoFace) {
-    const Vector3d touching = c.p - feature.radius * c.at.normal;
-    return is_on_face(base_, face, foot) && is_on_face(mover_, feature.own_face, f_.R.transpose() * (touching - f_.p));
+    const Vector3d touching = f_.R.transpose() * (c.p - feature.radius * c.at.normal - f_.p);
+    const double within = std::abs(mover_.faces[feature.own_face].surface->at(touching).distance);
+    c.weight = std::min(1.0, (kOwnNone - within) / (kOwnNone - kOwnFree));
+    return c.weight > 0 && is_on_face(base_, face, foot) && is_on_face(mover_, feature.own_face, touching);
   }
   const Trim::Answer answer = base_.faces[face].trim->find(*base_.faces[face].surface, foot);
   if (answer.where == Trim::Where::outside) return false;

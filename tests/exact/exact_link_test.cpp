@@ -8,6 +8,7 @@ namespace verisim::exact::test {
 namespace {
 
 using Kind = Solid::Kind;
+using Eigen::Vector2d;
 
 constexpr double kMargin = 0.001;
 constexpr double kRounding =
@@ -39,6 +40,29 @@ TEST(BallAndBox, AreAsFarApartAsTheClosedFormSays) {
     near += gap < kMargin ? 1 : 0;
   }
   EXPECT_GT(near, 3000);
+}
+
+// Inside, above, beside and at the rims of a tube alike: in the plane through its axis the tube is a rectangle.
+TEST(BallAndTube, AreAsFarApartAsTheClosedFormSays) {
+  constexpr double kOuter = 0.045;
+  constexpr double kInner = 0.03;
+  constexpr double kHalf = 0.06;
+  for (const double radius : {0.029, 0.008}) {
+    Pair pair(make(Kind::tube, {kOuter, kInner, 2 * kHalf}), make(Kind::sphere, {radius}));
+    int near = 0;
+    for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+      Draw draw(seed);
+      Vector3d p = draw.in_box({kOuter + radius, kOuter + radius, kHalf + radius});
+      if (seed % 2 == 0) p.head<2>() *= (kInner - radius) / kOuter;  // where the bore leaves it room
+      const Vector2d across(p.head<2>().norm() - 0.5 * (kOuter + kInner), p.z());
+      const double gap = (across.cwiseAbs() - Vector2d(0.5 * (kOuter - kInner), kHalf)).cwiseMax(0).norm() - radius;
+      if (gap < -0.0019) continue;
+      ASSERT_NEAR(pair.gap_at({p, draw.rotation()}, kMargin), std::min(gap, kMargin), kRounding)
+          << "seed " << seed << " at " << p.transpose();
+      near += gap < kMargin ? 1 : 0;
+    }
+    EXPECT_GT(near, 500);
+  }
 }
 
 // Two pins across each other: the distance of their axes less both radii.
