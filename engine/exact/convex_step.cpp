@@ -189,11 +189,14 @@ void ConvexStep::change_along(double dt) {
 }
 
 ConvexStep::Along ConvexStep::along(double t) const {
-  Along sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_bend_), inertia_slope_ + t * inertia_bend_};
+  Along sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_bend_), inertia_slope_ + t * inertia_bend_,
+            inertia_bend_};
   for (const Row& row : rows_) {
-    const double overlap = std::min(0.0, row.z + t * row.dz);
+    const double overlap = row.z + t * row.dz;
+    if (overlap >= 0) continue;
     sum.cost += 0.5 * row.k * overlap * overlap;
     sum.slope += row.k * overlap * row.dz;
+    sum.bend += row.k * row.dz * row.dz;
   }
   return sum;
 }
@@ -204,31 +207,23 @@ bool ConvexStep::gains_nothing() const {
   return -begin.slope <= 1e-15 * begin.cost;
 }
 
-/// The whole step if it lowers the cost enough, else about where the cost is least: its slope rises with t.
+/// The whole step if it lowers the cost enough, else where the cost is least. Least to the last digits: a stop short of
+/// there can be short of where the next row begins to act, and the next direction would run into that row again.
 double ConvexStep::step_length() const {
   constexpr double kEnough = 1e-4;
-  constexpr double kNear = 0.1;  // of the slope at the start
+  constexpr double kFlat = 1e-10;  // of the slope at the start
   const Along begin = along(0);
-  const Along end = along(1);
-  if (end.cost <= begin.cost + kEnough * begin.slope) return 1;
+  Along here = along(1);
+  if (here.cost <= begin.cost + kEnough * begin.slope) return 1;
   double low = 0;
   double high = 1;
-  double slope_low = begin.slope;
-  double slope_high = end.slope;
   double t = 1;
-  for (int i = 0; i < 20; ++i) {  // false position, with the Illinois rule
-    t = low + (high - low) * (slope_low / (slope_low - slope_high));
-    const double slope = along(t).slope;
-    if (std::abs(slope) <= kNear * std::abs(begin.slope)) break;
-    if (slope < 0) {
-      low = t;
-      slope_low = slope;
-      slope_high *= 0.5;
-    } else {
-      high = t;
-      slope_high = slope;
-      slope_low *= 0.5;
-    }
+  for (int i = 0; i < 40; ++i) {  // the slope rises with t and is made of straight pieces: Newton's method ends on one
+    const double wanted = t - here.slope / here.bend;
+    t = wanted > low && wanted < high ? wanted : 0.5 * (low + high);
+    here = along(t);
+    if (std::abs(here.slope) <= -kFlat * begin.slope) break;
+    (here.slope < 0 ? low : high) = t;
   }
   return t;
 }

@@ -68,9 +68,9 @@ class ConvexStep {
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
   };
-  /// The problem along the search direction: cost and its derivative at a step t.
+  /// The problem along the search direction: cost and its two derivatives at a step t.
   struct Along {
-    double cost, slope;
+    double cost, slope, bend;
   };
 
   void start(double dt);

@@ -177,7 +177,8 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
     found = true;
   }
   if (found)
-    add(best, feature, best.weight * lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(nearest.size()), face);
+    add(best, feature, best.weight * lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(nearest.size()),
+        face);
 }
 
 Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const {

@@ -186,8 +186,9 @@ void Simulation::Implementation::solve_island(std::size_t island) {
   for (Body& body : bodies) {
     body.in_solver = exact::kFixed;
     if (!body.solved || body.island != island) continue;
-    const Vector6d& u0 = body.implicit.free;
-    body.in_solver = solver->add_body(body.rigid.p_WC, body.implicit.A, u0, u0);
+    Vector6d last;
+    last << body.rigid.v_C, body.rigid.omega;
+    body.in_solver = solver->add_body(body.rigid.p_WC, body.implicit.A, body.implicit.free, last);
   }
   const auto belongs = [&](const Link& link) {
     return link.near && link.method == Hybrid::exact &&
