@@ -1,8 +1,11 @@
 """The dissertation's results on the command line (INTERFACES section 1, ORACLES section 1)."""
+import csv
 import json
 import os
 import time
 import unittest
+
+import h5py
 
 from program import ProgramTest
 
@@ -40,6 +43,37 @@ class Reproduce(ProgramTest):
         self.assertAlmostEqual(volume["published"], 1.0850727, places=6)
         low, high = volume["interval_95"]
         self.assertGreater(volume["published"] - high, high - low)
+
+    def test_r1_counts_overruns_beside_those_of_an_empty_loop(self):
+        report, _ = self.reproduce("--only", "R1")
+        share = report["rows"][2]
+        self.assertLess(share["interval_95"][0], share["here"])
+        self.assertIn("an empty paced loop", share["why"])
+        with h5py.File(self.path(report["runs"][0])) as run:
+            overruns = run["/timing/overrun"][:]
+            self.assertAlmostEqual(share["here"], 100 * overruns.mean(), places=9)
+            # An empty block between two frames is no long period of either.
+            self.assertLess(run["/timing/period_ns"][1:].max(), 0.9e9)
+
+    def test_r3_has_more_collisions_than_published_and_counts_every_miss(self):
+        report, _ = self.reproduce("--only", "R3")
+        collisions, misses, none, found = [row["here"] for row in report["rows"]]
+        self.assertGreaterEqual(collisions, 7273610)
+        self.assertEqual(misses, none + found)
+        self.assertLess(misses, 100)
+
+    def test_r9_parts_that_contradict_each_other_never_assemble(self):
+        report, _ = self.reproduce("--only", "R9")
+        here = {row["what"]: row["here"] for row in report["rows"]}
+        self.assertEqual(here["angled pins (fig. 8.1): assembles"], "0 of 2")
+        self.assertEqual(here["pins too far apart (fig. 8.2): assembles"], "0 of 2")
+        self.assertEqual(here["one of these pins alone: assembles"], "2 of 2")
+        for file in report["runs"]:
+            if file.endswith(".csv"):
+                with open(self.path(file)) as table:
+                    rows = list(csv.DictReader(table))
+                self.assertEqual([row["seed"] for row in rows], ["1", "2"])
+                self.assertEqual(len({row["state_hash"] for row in rows}), 2, "every seed is its own trial")
 
     def test_table_has_a_line_for_every_figure(self):
         table = self.succeed("reproduce", "--quick", "--only", "R7", "-o", self.path("here")).stdout

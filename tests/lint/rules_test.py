@@ -24,7 +24,7 @@ MAY_INCLUDE = {
     "wii": "base",
     "vrpn": "base",
     "record": "base",
-    "reproduce": "base geometry voxel contact constraint wii",
+    "reproduce": "base geometry record voxel contact constraint wii",
     "simulation": "base geometry voxel contact constraint exact dynamics device robot wii record",
     "script": "base geometry device robot wii record simulation",
 }
