@@ -55,7 +55,7 @@ struct ActiveConstraint {
 [[nodiscard]] ActiveConstraint activate(const Constraint& constraint, const Pose& X_AB, double alpha);
 
 /// n(x), not normalised; zero where there is none. About 20 flops, cones and rings one square root more.
-[[nodiscard]] inline Vector3d normal_at(const ActiveConstraint& c, const Vector3d& x) {
+[[nodiscard, gnu::always_inline]] inline Vector3d normal_at(const ActiveConstraint& c, const Vector3d& x) {
   if (c.field == NormalField::constant) return c.direction;
   Vector3d from_point = x - c.point;
   if (c.field == NormalField::about_point) return from_point;
@@ -69,7 +69,8 @@ struct ActiveConstraint {
 }
 
 /// Eq. 8.8, or eq. 8.9 if `pushes_only`, with the normal `n` of any length; f as it came if n is zero.
-[[nodiscard]] inline Vector3d restore_along(const Vector3d& n, const Vector3d& f, double alpha, bool pushes_only) {
+[[nodiscard, gnu::always_inline]] inline Vector3d restore_along(const Vector3d& n, const Vector3d& f, double alpha,
+                                                                bool pushes_only) {
   const double n_squared = n.squaredNorm();
   if (n_squared == 0) return f;
   const double f_along = f.dot(n);

@@ -30,14 +30,14 @@ HybridLink::HybridLink(const Side& map, const Side& points, const ConstraintOpti
   const std::size_t capacity = points.voxels->shell.size();
   set_a_.resize(capacity);
   set_b_.resize(capacity);
-  for (auto* column : {&fx_, &fy_, &fz_}) column->resize(capacity);
+  size_.resize(capacity);
 }
 
 ContactColumns HybridLink::columns_of(const ContactList& contacts) {
-  for (std::uint32_t i = 0; i < contacts.size; ++i) {
-    set_a_[i] = feature_at(*map_.voxels, contacts.slot[i]);
-    set_b_[i] = feature_of_point(points_.voxels->shell, contacts.point[i]);
-  }
+  const VoxelBody& map = *map_.voxels;
+  const Pointshell& shell = points_.voxels->shell;
+  for (std::uint32_t i = 0; i < contacts.size; ++i) set_a_[i] = feature_at(map, contacts.slot[i]);
+  for (std::uint32_t i = 0; i < contacts.size; ++i) set_b_[i] = feature_of_point(shell, contacts.point[i]);
   ContactColumns columns;
   columns.size = contacts.size;
   columns.x = contacts.x.data();
@@ -45,7 +45,7 @@ ContactColumns HybridLink::columns_of(const ContactList& contacts) {
   columns.z = contacts.z.data();
   columns.set_a = set_a_.data();
   columns.set_b = set_b_.data();
-  columns.origin = map_.voxels->voxmap.origin;
+  columns.origin = map.voxmap.origin;
   return columns;
 }
 
@@ -55,22 +55,27 @@ RestoreResult HybridLink::restore(ContactList& contacts, const Pose& X_AB, bool 
   columns.fx = contacts.fx.data();
   columns.fy = contacts.fy.data();
   columns.fz = contacts.fz.data();
-  if (turn_normals) {
-    std::copy_n(contacts.fx.begin(), contacts.size, fx_.begin());
-    std::copy_n(contacts.fy.begin(), contacts.size, fy_.begin());
-    std::copy_n(contacts.fz.begin(), contacts.size, fz_.begin());
-  }
+  if (turn_normals) keep_sizes(contacts);
   const RestoreResult result = constraints_.restore_contacts(columns);
-  if (!turn_normals) return result;
-  for (std::uint32_t i = 0; i < contacts.size; ++i) {
-    const Vector3f before(fx_[i], fy_[i], fz_[i]);
-    const float size = before.norm();
-    if (!(size > 0)) continue;
-    contacts.nx[i] = contacts.fx[i] / size;
-    contacts.ny[i] = contacts.fy[i] / size;
-    contacts.nz[i] = contacts.fz[i] / size;
-  }
+  if (turn_normals && result.restored > 0) turn(contacts);
   return result;
+}
+
+/// Sizes of forces that still lie along their contacts' normals.
+void HybridLink::keep_sizes(const ContactList& contacts) {
+  for (std::uint32_t i = 0; i < contacts.size; ++i) {
+    size_[i] = contacts.fx[i] * contacts.nx[i] + contacts.fy[i] * contacts.ny[i] + contacts.fz[i] * contacts.nz[i];
+  }
+}
+
+void HybridLink::turn(ContactList& contacts) const {
+  for (std::uint32_t i = 0; i < contacts.size; ++i) {
+    if (!(size_[i] > 0)) continue;
+    const float scale = 1 / size_[i];
+    contacts.nx[i] = scale * contacts.fx[i];
+    contacts.ny[i] = scale * contacts.fy[i];
+    contacts.nz[i] = scale * contacts.fz[i];
+  }
 }
 
 RestoreResult HybridLink::look_up(const ContactList& contacts, const Pose& X_AB) {

@@ -43,11 +43,13 @@ class HybridLink {
 
  private:
   [[nodiscard]] ContactColumns columns_of(const ContactList& contacts);
+  void keep_sizes(const ContactList& contacts);
+  void turn(ContactList& contacts) const;
 
   Side map_, points_;
   ConstraintLink constraints_;
   std::vector<FeatureSetId> set_a_, set_b_;     ///< of this frame's contacts
-  std::vector<float> fx_, fy_, fz_;             ///< forces as they were before restoration
+  std::vector<float> size_;                     ///< of the forces before restoration [N]
   std::vector<bool> map_known_, points_known_;  ///< by set id
 };
 

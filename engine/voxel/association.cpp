@@ -287,7 +287,7 @@ void number_sets(const std::vector<std::unique_ptr<RunOfSets>>& runs, const Mode
         begin = run->set_end[set];
       }
       const std::uint32_t block = map.brick_block[model.bricks.brick[entry++]];
-      const auto first = body.shell.features.begin() + map.first_surface[block];
+      const auto first = body.shell.features.begin() + map.first_surface[block][0];
       for (auto id = first; id != first + count(map.surface_mask[block]); ++id) *id = number[*id];
     }
   }
@@ -322,7 +322,7 @@ AssociationReport associate_part(const Part& part, unsigned threads, VoxelBody& 
     BrickAssociation association(model, first_edge, *runs[begin]);
     for (std::size_t entry = begin; entry < end; ++entry) {
       const std::uint32_t block = body.voxmap.brick_block[model.bricks.brick[entry]];
-      association.associate(entry, body.shell.features.data() + body.voxmap.first_surface[block]);
+      association.associate(entry, body.shell.features.data() + body.voxmap.first_surface[block][0]);
     }
   });
   number_sets(runs, model, body);

@@ -179,18 +179,19 @@ std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxm
 
 void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t blocks, unsigned threads, Voxmap& map) {
   std::vector<std::uint32_t> brick_of_block(blocks);
-  map.first_surface.assign(blocks, 0);
+  map.first_surface.assign(blocks, {});
   map.surface_mask.assign(blocks, BrickMask{});
   std::uint32_t surface_count = 0;
   for (std::size_t brick = 0; brick < map.brick_block.size(); ++brick) {
     const std::uint32_t block = map.brick_block[brick];
     if (block == kOutsideBlock || block == kInsideBlock) continue;
     brick_of_block[block] = static_cast<std::uint32_t>(brick);
-    map.first_surface[block] = surface_count;
     const std::uint32_t entry = surface.entry[brick];
-    if (entry == kNoSurface) continue;
-    map.surface_mask[block] = surface.cells[entry];
-    surface_count += static_cast<std::uint32_t>(count(surface.cells[entry]));
+    if (entry != kNoSurface) map.surface_mask[block] = surface.cells[entry];
+    for (std::size_t z = 0; z < kBrickSide; ++z) {
+      map.first_surface[block][z] = surface_count;
+      surface_count += count_bits(map.surface_mask[block][z]);
+    }
   }
   map.surface_count = surface_count;
 

@@ -49,7 +49,7 @@ Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const 
       const std::size_t brick = surface.brick[entry];
       const Eigen::Vector3i corner = brick_corner(brick, surface.bricks);
       const std::span<const Vector3d> inward = normals.compute(lists.of(brick), corner, surface.cells[entry]);
-      const std::uint32_t first = map.first_surface[map.brick_block[brick]];
+      const std::uint32_t first = map.first_surface[map.brick_block[brick]][0];
       std::uint32_t i = first;
       for_each_cell(surface.cells[entry], [&](int x, int y, int z) {
         const Vector3f p = (map.center_of(corner + Eigen::Vector3i(x, y, z)) - reference).cast<float>();

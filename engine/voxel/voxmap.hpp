@@ -11,7 +11,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,8 +40,8 @@ struct Voxmap {                            //  shape        unit  meaning
   std::vector<std::uint32_t> brick_block;  //  (bz,by,bx)   -     block of each brick, x fastest
   std::vector<Layer> brick_clearance;      //  (bz,by,bx)   -     signed distance to the surface in bricks
   std::vector<Layer> layers;               //  (blocks,512) -     cell = x + 8 y + 64 z within the brick
-  std::vector<std::array<std::uint64_t, 8>> surface_mask;  // (blocks) - bit x + 8 y of word z: is a surface voxel
-  std::vector<std::uint32_t> first_surface;                // (blocks) - number of the block's first surface voxel
+  std::vector<std::array<std::uint64_t, 8>> surface_mask;   // (blocks) - bit x + 8 y of word z: is a surface voxel
+  std::vector<std::array<std::uint32_t, 8>> first_surface;  // (blocks) - number of each word's first surface voxel
   std::uint32_t surface_count = 0;
 
   /// Layer of the voxel that contains the body-coordinate point; outside the grid: +(kBand + 1). For tests and tools.
@@ -58,14 +57,20 @@ struct Voxmap {                            //  shape        unit  meaning
   [[nodiscard]] std::size_t memory_bytes() const;
 };
 
+/// Bits that are set: without the popcount instruction, which not every x86-64 has, std::popcount is a function call.
+[[nodiscard]] inline std::uint32_t count_bits(std::uint64_t word) {
+  word -= word >> 1 & 0x5555555555555555;
+  word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
+  word = (word + (word >> 4)) & 0x0F0F0F0F0F0F0F0F;
+  return static_cast<std::uint32_t>(word * 0x0101010101010101 >> 56);
+}
+
 /// Number of the surface voxel that is stored at `slot` (block * 512 + cell); -1 if it is none. A few ns.
 [[nodiscard]] inline std::int64_t surface_number_of_slot(const Voxmap& map, std::uint32_t slot) {
   const std::uint32_t block = slot / kBrickCells, z = slot % kBrickCells / 64, bit = slot % 64;
-  const auto& mask = map.surface_mask[block];
-  if ((mask[z] >> bit & 1) == 0) return -1;
-  std::int64_t number = map.first_surface[block];
-  for (std::uint32_t i = 0; i < z; ++i) number += std::popcount(mask[i]);
-  return number + std::popcount(mask[z] & ((std::uint64_t{1} << bit) - 1));
+  const std::uint64_t word = map.surface_mask[block][z];
+  if ((word >> bit & 1) == 0) return -1;
+  return map.first_surface[block][z] + count_bits(word & ((std::uint64_t{1} << bit) - 1));
 }
 
 /// One point per surface voxel: the voxel's centre with an inward normal. Sorted by brick (z, y, x), then by cell

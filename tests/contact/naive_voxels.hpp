@@ -163,7 +163,10 @@ inline bool add_brick(const Shape& shape, const Dense& grid, const Eigen::Vector
   map.brick_block.push_back(static_cast<std::uint32_t>(map.surface_mask.size()));
   map.layers.insert(map.layers.end(), cells.begin(), cells.end());
   map.surface_mask.push_back(mask);
-  map.first_surface.push_back(begin);
+  map.first_surface.push_back({begin});
+  for (std::size_t z = 1; z < mask.size(); ++z) {
+    map.first_surface.back()[z] = map.first_surface.back()[z - 1] + count_bits(mask[z - 1]);
+  }
   close_cluster(shell, begin);
   return begin != shell.size();
 }
