@@ -1,7 +1,8 @@
 // What the hybrid method costs a frame: the same contacts with `off`, `restore` and `blend`.
 //
-// The poses of a pin in a hole are put before one simulation of each method, in turns. Nobody holds the pin there, so
-// it stays, and all see the same contacts. Each frame keeps its best time of all rounds (pose_times.hpp says why).
+// The poses of a pin in a hole are put before one simulation of each method, in turns: every frame begins where it is
+// told to, at rest, so that all see the same contacts. Each frame keeps its best time of all rounds (pose_times.hpp
+// says why).
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -54,7 +55,6 @@ struct Method {
 };
 
 void compare(benchmark::State& state, Scene scene, const std::vector<Pose>& poses) {
-  scene.grasps.clear();
   std::vector<Method> methods;
   for (const auto& [name, hybrid] :
        {std::pair{"off", Hybrid::off}, {"restore", Hybrid::restore}, {"blend", Hybrid::blend}}) {
