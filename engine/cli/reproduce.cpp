@@ -137,7 +137,7 @@ void add_reproduce(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("reproduce", "Every figure that the dissertation reports, measured again");
   auto o = std::make_shared<Options>();
   command->add_option("-o,--out", o->out, "Folder for run files and tables")->capture_default_str();
-  command->add_option("--only", o->only, "Only these (repeatable): R7")->take_all()->check(CLI::IsMember(ids()));
+  command->add_option("--only", o->only, "Only these (repeatable)")->take_all()->check(CLI::IsMember(ids()));
   command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");
   command->add_flag("--quick", o->quick, "Shorter runs: under 45 s in all");
   command->add_flag("--json", o->json, "One JSON object on stdout");

@@ -9,6 +9,8 @@ std::span<const Reproduction> reproductions() {
       Reproduction{"R1", "overruns of the paced trial", &r1_overruns},
       Reproduction{"R2", "passes with and without restoration", &r2_passes},
       Reproduction{"R3", "collisions and cache misses", &r3_collisions},
+      Reproduction{"R4", "recognition of a pair (table 7.1)", &r4_recognition},
+      Reproduction{"R5", "blending and association", &r5_blending},
       Reproduction{"R7", "trackable area and volume", &r7_coverage},
       Reproduction{"R9", "parts whose constraints conflict", &r9_conflicts},
   };

@@ -22,6 +22,8 @@ struct Reproduction {
 [[nodiscard]] std::vector<Row> r1_overruns(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r2_passes(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r3_collisions(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r4_recognition(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r5_blending(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r7_coverage(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r9_conflicts(const Workshop& workshop);
 

@@ -10,7 +10,7 @@ import h5py
 from program import ProgramTest
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-IDS = ["R1", "R2", "R3", "R7", "R9"]
+IDS = ["R1", "R2", "R3", "R4", "R5", "R7", "R9"]
 
 
 class Reproduce(ProgramTest):
@@ -74,6 +74,21 @@ class Reproduce(ProgramTest):
                     rows = list(csv.DictReader(table))
                 self.assertEqual([row["seed"] for row in rows], ["1", "2"])
                 self.assertEqual(len({row["state_hash"] for row in rows}), 2, "every seed is its own trial")
+
+    def test_r4_regressions_of_the_printed_rows_are_the_published_ones(self):
+        report, _ = self.reproduce("--only", "R4")
+        published = {row["what"]: row["published"] for row in report["rows"]}
+        for what, value in [("against constraints", 0.7075), ("against specializations", 0.8517)]:
+            self.assertEqual([round(p, 4) for w, p in published.items() if what in w], [value])
+        with open(self.path(report["runs"][0])) as f:
+            self.assertEqual(len(f.readlines()), 1 + 64, "all states of six recognizers")
+
+    def test_r5_run_files_are_runs(self):
+        report, _ = self.reproduce("--only", "R5")
+        runs = [file for file in report["runs"] if file.endswith(".h5")]
+        self.assertEqual(len(runs), 2)
+        for file in runs:
+            self.succeed("replay", file, "--verify")
 
     def test_table_has_a_line_for_every_figure(self):
         table = self.succeed("reproduce", "--quick", "--only", "R7", "-o", self.path("here")).stdout

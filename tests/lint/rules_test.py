@@ -47,6 +47,7 @@ HOME_OF_LIBRARY = {
 # Where the wall clock may be read: to time stages, to pace a run, to wait for the disk or a child process, to date
 # messages.
 MAY_READ_THE_CLOCK = {
+    "engine/reproduce/r5_blending.cpp",
     "engine/simulation/step.cpp",
     "engine/record/recorder.cpp",
     "engine/geometry/cad_client.cpp",
