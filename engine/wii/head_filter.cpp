@@ -7,16 +7,20 @@
 namespace verisim::wii {
 namespace {
 
-// Chosen on the natural trajectory: lower lags behind it, higher lets pixel noise through.
-constexpr double kLinearDensity = 0.15;  // m^2/s^3
-constexpr double kAngularDensity = 2;    // rad^2/s^3
+// Chosen on natural motions whose amplitudes fall as f^-0.5 to f^-2 with their frequencies: lower lags behind the
+// lively ones, higher lets the pixel noise of the calm ones through.
+constexpr double kLinearDensity = 0.7;   // m^2/s^3
+constexpr double kAngularDensity = 0.5;  // rad^2/s^3
 // Turning that the remaining LEDs cannot tell from moving: to allow what heads do at their fastest would let every
 // motion be explained as a turn.
 constexpr double kGuessedDensity = 0.1;  // rad^2/s^3
 constexpr double kUnseenDensity = 8;     // times as much once nothing is seen: the head may do anything
-constexpr double kDecay = 0.25;          // s
-constexpr double kSlow = 0.2;            // s
-constexpr double kSpinMax = 15;          // rad/s
+constexpr double kDecay = 0.4;           // s
+// Two of three LEDs tell turning from coming nearer only by what the third said before: a turning that is carried on
+// too long becomes an error of depth.
+constexpr double kPairDecay = 0.08;  // s
+constexpr double kSlow = 0.1;        // s
+constexpr double kSpinMax = 15;      // rad/s
 
 }  // namespace
 
@@ -54,7 +58,8 @@ void HeadFilter::predict(double dt, View view) {
   P_.middleRows<3>(6) += dt * P_.middleRows<3>(9);
   P_.middleCols<3>(0) += dt * P_.middleCols<3>(3);
   P_.middleCols<3>(6) += dt * P_.middleCols<3>(9);
-  if (view != View::all) slow_down(kDecay / (kDecay + dt), view);
+  const double decay = view == View::pair ? kPairDecay : kDecay;
+  if (view != View::all) slow_down(decay / (decay + dt), view);
   const double more = view == View::none ? kUnseenDensity : 1;
   const auto drive = [&](int block, double density) {
     for (int i = block; i < block + 3; ++i) {

@@ -20,9 +20,9 @@ class HeadFilter {
 
   /// How much of the head the last report showed: two of three LEDs are a pair.
   enum class View { all, pair, one, none };
-  /// Moves on by dt seconds. Where the full view ends, the mean velocities of the last 0.2 s take over from the
-  /// momentary ones, which are noisier, and what is no longer seen dies away within 0.25 s: rotation always, motion
-  /// along the ray with one LED, all motion with none.
+  /// Moves on by dt seconds. Where the full view ends, the mean velocities of the last 0.1 s take over from the
+  /// momentary ones, which are noisier, and what is no longer seen dies away within 0.4 s: rotation always (with a pair
+  /// within 0.08 s), motion along the ray with one LED, all motion with none.
   void predict(double dt, View view);
 
   /// One scalar whose prediction is off by `residual`, with gradient (g_p, g_theta) and variance `variance`. Refused,
