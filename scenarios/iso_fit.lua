@@ -76,7 +76,7 @@ path[#path + 1] = {position = {0, 0, length / 2 - height / 2 - mm(1)}, speed = p
 
 local hand = Devices.Hand{
   name = "hand", path = path, error = error_of_middle, angularError = {p.tilt * ax, p.tilt * ay, 0},
-  tremor = p.tremor, lead = 0.01,
+  tremor = p.tremor, lead = 0.025,
 }
 addDevice(hand)
 grasp(hand, pin)

@@ -8,8 +8,8 @@
 // rings.
 //
 // A curve is cut into segments no longer than the spacing. In the search a segment's sample slides along its own
-// segment to the nearest place (exact_link.hpp); up to kGroup neighbouring segments make one row, that of the nearest
-// of them.
+// segment to the nearest place (exact_link.hpp); a group of neighbouring segments makes one row, that of the nearest of
+// them: up to four, and on an arc those within half a radian, beyond which they push in different directions.
 //
 // Stiffness: an edge is a line of springs with `line_stiffness` per metre, a point counts as `point_length` of it. So
 // the sum over samples tends to an integral over the line as the spacing shrinks. The default is that of steel in line
@@ -77,15 +77,15 @@ struct Feature {
   double half_width = 0;             ///< of a segment, in t
   double reach = 0;                  ///< m, half the length of a segment
   double stiffness = 0;              ///< N/m of one segment
+  std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row
   std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; must contain the place of contact
   bool against_round_only = false;   ///< axes of pins: their ends decide against everything else
 };
 
-/// Neighbouring segments of one feature, as the search takes them: at most kRun samples, in groups of kGroup.
+/// Neighbouring segments of one feature, as the search takes them: at most kRun samples.
 struct Run {
   std::uint32_t feature, begin, end;  ///< samples [begin, end)
 };
-inline constexpr std::uint32_t kGroup = 4;
 inline constexpr std::uint32_t kRun = 32;
 
 struct ExactBody {

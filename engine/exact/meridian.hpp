@@ -1,5 +1,6 @@
-// A curve seen from a surface: its distance from it, with the first two derivatives along the curve, in the surface's
-// own axes, where a handful of multiplications are enough. The search's innermost loop. Private to this folder.
+// A curve seen from a surface: its distance from it, with the first two derivatives along the curve and the change
+// within the step, in the surface's own axes, where a handful of multiplications are enough. The search's innermost
+// loop. Private to this folder.
 #pragma once
 
 #include <cmath>
@@ -8,9 +9,10 @@
 
 namespace verisim::exact {
 
-/// p(t) = origin + c x + s y in coordinates (x axis, y axis, axis) of the surface, and the surface's numbers.
+/// p(t) = origin + c x + s y in coordinates (x axis, y axis, axis) of the surface, and the surface's numbers. Within
+/// the step a place p of the curve moves by shift + turn x p.
 struct CurveFromSurface {
-  Vector3d origin, x, y;
+  Vector3d origin, x, y, shift, turn;
   bool is_arc;
   PreciseSurface::Kind kind;
   double side, radius, ring, cosine, sine, tangent;
@@ -20,6 +22,7 @@ struct Measure {
   double distance;  ///< m
   double slope;     ///< by t
   double bend;      ///< second derivative by t
+  double change;    ///< m, of the distance within the step
 };
 
 /// At one place, c and s as in ExactBody::sample_c. `kKind`: sphere and torus are one kind.
@@ -35,30 +38,38 @@ inline Measure measure(const CurveFromSurface& f, double c, double s) {
   const double BX = kIsArc ? f.origin.x() - X : 0;
   const double BY = kIsArc ? f.origin.y() - Y : 0;
   const double BZ = kIsArc ? f.origin.z() - Z : 0;
-  if constexpr (kKind == PreciseSurface::Kind::plane) return {Z, TZ, BZ};
+  const double MX = f.shift.x() + f.turn.y() * Z;  // less what turns about the axis and so along the surface
+  const double MY = f.shift.y() - f.turn.x() * Z;
+  const double MZ = f.shift.z() + f.turn.x() * Y - f.turn.y() * X;
+  if constexpr (kKind == PreciseSurface::Kind::plane) return {Z, TZ, BZ, MZ};
   const double rho = std::sqrt(X * X + Y * Y);
   const double per_rho = 1 / (rho + 1e-300);  // on the axis: no slope
   const double rho1 = (X * TX + Y * TY) * per_rho;
   const double rho2 = (TX * TX + TY * TY - rho1 * rho1 + X * BX + Y * BY) * per_rho;
+  const double away = (X * MX + Y * MY) * per_rho;
   if constexpr (kKind == PreciseSurface::Kind::cylinder)
-    return {f.side * (rho - f.radius), f.side * rho1, f.side * rho2};
+    return {f.side * (rho - f.radius), f.side * rho1, f.side * rho2, f.side * away};
   if constexpr (kKind == PreciseSurface::Kind::cone) {
     return {f.side * f.cosine * (rho - f.radius - Z * f.tangent), f.side * (f.cosine * rho1 - f.sine * TZ),
-            f.side * (f.cosine * rho2 - f.sine * BZ)};
+            f.side * (f.cosine * rho2 - f.sine * BZ), f.side * (f.cosine * away - f.sine * MZ)};
   }
   const double q = rho - f.ring;
   const double tube = std::sqrt(q * q + Z * Z);
   const double per_tube = 1 / (tube + 1e-300);
   const double tube1 = (q * rho1 + Z * TZ) * per_tube;
   const double tube2 = (rho1 * rho1 + q * rho2 + TZ * TZ + Z * BZ - tube1 * tube1) * per_tube;
-  return {f.side * (tube - f.radius), f.side * tube1, f.side * tube2};
+  return {f.side * (tube - f.radius), f.side * tube1, f.side * tube2, f.side * (q * away + Z * MZ) * per_tube};
 }
 
+/// @param shift, turn  of the curve within the step, in the coordinates of the surface's body
 [[nodiscard]] inline CurveFromSurface seen_from(const PreciseSurface& s, const Vector3d& origin, const Vector3d& x,
-                                                const Vector3d& y, bool is_arc) {
+                                                const Vector3d& y, bool is_arc, const Vector3d& shift,
+                                                const Vector3d& turn) {
   return {s.to_own_axes(origin - s.point()),
           s.to_own_axes(x),
           s.to_own_axes(y),
+          s.to_own_axes(shift + turn.cross(s.point())),
+          s.to_own_axes(turn),
           is_arc,
           s.kind(),
           s.side(),

@@ -13,26 +13,26 @@ constexpr double kLeanNone = 0.64;  // 40 degrees
 // place lies in the next segment, shall not stand for it.
 constexpr double kOwnFree = 1e-7;  // m
 constexpr double kOwnNone = 1e-6;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A feature in the coordinates of the base.
 struct PlacedFeature {
   const Feature* feature;
   Vector3d origin, x, y;
   [[nodiscard]] bool is_arc() const { return feature->kind == Feature::Kind::arc; }
-  [[nodiscard]] CurveFromSurface seen_from(const PreciseSurface& surface) const {
-    return exact::seen_from(surface, origin, x, y, is_arc());
-  }
   [[nodiscard]] Vector3d point(const Place& at) const { return origin + at.c * x + at.s * y; }
   [[nodiscard]] Vector3d tangent(const Place& at) const { return is_arc() ? Vector3d(at.c * y - at.s * x) : x; }
 };
 
 /// A row in the making.
 struct Candidate {
+  std::uint32_t group = 0;  ///< its first sample
   std::uint32_t sample = 0;
   Place place{};
   Vector3d p;  ///< m, the place on the curve
   SurfaceAt at{};
   double gap = 0;
+  double gap_ahead = 0;  ///< m, at the end of the step if nothing came between
   Vector3d normal;
   double edge_share = 0;  ///< 0: against a face, up to 1: against the middle of an edge's fold
   double weight = 1;      ///< less where the place is not the mover's boundary
@@ -82,7 +82,12 @@ class Search {
  private:
   void meet(std::uint32_t run, std::uint32_t face);
   void meet_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
-                  std::span<double> nearest, std::uint32_t face);
+                  std::span<double> ahead, std::uint32_t face);
+  [[nodiscard]] CurveFromSurface seen_from(const PreciseSurface& surface, const PlacedFeature& placed) const {
+    return exact::seen_from(surface, placed.origin, placed.x, placed.y, placed.is_arc(), f_.dt * f_.v,
+                            f_.dt * f_.omega);
+  }
+  [[nodiscard]] Vector3d moved(const Vector3d& p) const { return f_.dt * (f_.v + f_.omega.cross(p)); }
   [[nodiscard]] Place slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const;
   [[nodiscard]] bool admit(const PlacedFeature& placed, std::uint32_t face, Candidate& c) const;
   [[nodiscard]] bool cross_edge(const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
@@ -135,54 +140,60 @@ void Search::meet(std::uint32_t r, std::uint32_t face) {
   const PreciseSurface& surface = *base_.faces[face].surface;
   if (feature.against_round_only && !surface.is_convex()) return;
   const PlacedFeature placed{&feature, f_.R * feature.origin + f_.p, f_.R * feature.x, f_.R * feature.y};
-  const CurveFromSurface curve = placed.seen_from(surface);
+  const CurveFromSurface curve = seen_from(surface, placed);
   const std::uint32_t count = run.end - run.begin;
   std::array<double, kRun> nearest;
+  std::array<double, kRun> ahead;
   const double* c = &mover_.sample_c[run.begin];
   const double* s = &mover_.sample_s[run.begin];
   with_measure(curve, [&](auto&& measure_at) {
-    for (std::uint32_t i = 0; i < count; ++i)
-      nearest[i] = nearest_of(measure_at(c[i], s[i]), feature.half_width) - feature.radius;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Measure m = measure_at(c[i], s[i]);
+      nearest[i] = nearest_of(m, feature.half_width) - feature.radius;
+      ahead[i] = nearest[i] + m.change;
+    }
   });
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (!(nearest[i] < f_.margin)) ahead[i] = kNever;
   cost_.samples += count;
-  for (std::uint32_t i = 0; i < count; i += kGroup) {
-    const std::span<double> some = std::span(nearest).subspan(i, std::min(kGroup, count - i));
-    meet_group(placed, curve, run.begin + i, some, face);
-  }
+  for (std::uint32_t i = 0; i < count; i += feature.group)
+    meet_group(placed, curve, run.begin + i, std::span(ahead).subspan(i, std::min(feature.group, count - i)), face);
 }
 
-/// One row for a group's nearest sample that the face admits, if it is near enough. `nearest` is used up.
+/// One row for that of a group's samples, of those that are near enough and that the face admits, which will be nearest
+/// at the end of the step. `ahead`: how near about; used up.
 void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
-                        std::span<double> nearest, std::uint32_t face) {
+                        std::span<double> ahead, std::uint32_t face) {
   const Feature& feature = *placed.feature;
   const PreciseSurface& surface = *base_.faces[face].surface;
   Candidate best;
-  best.gap = f_.margin;
-  bool found = false;
+  best.gap_ahead = kNever;
   while (true) {
-    const auto next = std::min_element(nearest.begin(), nearest.end());
-    if (!(*next < best.gap)) break;
-    *next = std::numeric_limits<double>::infinity();
-    ++cost_.slides;
+    const auto next = std::min_element(ahead.begin(), ahead.end());
+    if (!(*next < best.gap_ahead)) break;
     Candidate c;
-    c.sample = begin + static_cast<std::uint32_t>(next - nearest.begin());
+    c.group = begin;
+    c.sample = begin + static_cast<std::uint32_t>(next - ahead.begin());
+    *next = kNever;
+    ++cost_.slides;
     c.place = slide(curve, mover_.sample_c[c.sample], mover_.sample_s[c.sample], feature.half_width);
     c.p = placed.point(c.place);
     c.at = surface.at(c.p);
     c.gap = c.at.distance - feature.radius;
-    if (c.gap >= best.gap || c.gap < -base_.options.spacing) continue;
+    if (c.gap >= f_.margin || c.gap < -base_.options.spacing) continue;
     c.normal = c.at.normal;
-    if (!admit(placed, face, c) || c.gap >= best.gap) continue;
-    best = c;
-    found = true;
+    if (!admit(placed, face, c) || c.gap >= f_.margin) continue;
+    c.gap_ahead = c.gap + c.normal.dot(moved(c.p));
+    if (c.gap_ahead < best.gap_ahead) best = c;
   }
-  if (found)
-    add(best, feature, best.weight * lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(nearest.size()),
-        face);
+  if (best.gap_ahead == kNever) return;
+  add(best, feature, best.weight * lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(ahead.size()),
+      face);
 }
 
 Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const {
-  return slide(placed.seen_from(surface), mover_.sample_c[sample], mover_.sample_s[sample], placed.feature->half_width);
+  return slide(seen_from(surface, placed), mover_.sample_c[sample], mover_.sample_s[sample],
+               placed.feature->half_width);
 }
 
 /// Where two faces meet in a convex edge: is `mine` the one that decides at this place?
@@ -190,9 +201,9 @@ bool Search::decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& 
   double a = mine.distance;
   double b = other.distance;
   if (a >= 0 && b >= 0) {  // free: the one that will be passed last
-    const Vector3d moved = f_.dt * (f_.v + f_.omega.cross(p));
-    a += mine.normal.dot(moved);
-    b += other.normal.dot(moved);
+    const Vector3d way = moved(p);
+    a += mine.normal.dot(way);
+    b += other.normal.dot(way);
   }
   return a > b || (a == b && first);
 }
@@ -297,7 +308,7 @@ void Search::add(const Candidate& c, const Feature& feature, double weight, std:
   const Vector3d normal = f_.R_WB * c.normal;
   const Vector3d place = f_.R_WB * (c.p - feature.radius * c.normal) + f_.p_WB;
   const auto faces = static_cast<std::uint32_t>(base_.faces.size());
-  const std::uint32_t source = (c.sample / kGroup * faces + face) << 1 | static_cast<std::uint32_t>(f_.mover_is_second);
+  const std::uint32_t source = (c.group * faces + face) << 1 | static_cast<std::uint32_t>(f_.mover_is_second);
   rows_.add({f_.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source});
   depth_max_ = std::max(depth_max_, -c.gap);
   ++cost_.rows;

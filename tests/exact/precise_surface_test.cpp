@@ -158,7 +158,7 @@ TEST_P(EverySurface, ChartsAPointByItsParameters) {
   }
 }
 
-/// Curves that pass at any angle: the search's short form of distance, slope and bend is that of the long form.
+/// Curves that pass at any angle: the search's short form of distance, slope, bend and change is that of the long form.
 TEST_P(EverySurface, MeasuresACurveAsThePointsOnItTell) {
   constexpr double kStep = 1e-4;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -172,8 +172,11 @@ TEST_P(EverySurface, MeasuresACurveAsThePointsOnItTell) {
     const auto c = [&](double s) { return is_arc ? std::cos(s) : s; };
     const auto s = [&](double a) { return is_arc ? std::sin(a) : 0; };
     const auto distance = [&](double a) { return surface_.at(origin + c(a) * x + s(a) * y).distance; };
+    const Vector3d shift = draw.in_box({0.1, 0.1, 0.1});
+    const Vector3d turn = draw.in_box({1, 1, 1});
     Measure found{};
-    with_measure(seen_from(surface_, origin, x, y, is_arc), [&](auto&& measure_at) { found = measure_at(c(t), s(t)); });
+    with_measure(seen_from(surface_, origin, x, y, is_arc, shift, turn),
+                 [&](auto&& measure_at) { found = measure_at(c(t), s(t)); });
     ASSERT_NEAR(found.distance, distance(t), 1e-14) << "seed " << seed;
     const double off_axis = (surface_.to_own_axes(origin + c(t) * x + s(t) * y - at_.position)).head<2>().norm();
     if (off_axis < 0.005 ||
@@ -183,6 +186,8 @@ TEST_P(EverySurface, MeasuresACurveAsThePointsOnItTell) {
         << "seed " << seed;
     const double bend = (distance(t + kStep) - 2 * distance(t) + distance(t - kStep)) / (kStep * kStep);
     ASSERT_NEAR(found.bend, bend, 1e-3 * std::max(1.0, std::abs(bend))) << "seed " << seed;
+    const Vector3d p = origin + c(t) * x + s(t) * y;
+    ASSERT_NEAR(found.change, surface_.at(p).normal.dot(shift + turn.cross(p)), 1e-12) << "seed " << seed;
   }
 }
 
