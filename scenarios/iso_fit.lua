@@ -64,12 +64,20 @@ local pin = addObject{
 local path = {{position = {0, 0, up}, dwell = 0.1}}
 local rim = height / 2 + length / 2
 if p.chamfer <= 0 then
-  -- Without a lead the hand presses lightly and winds outwards and back until the pin falls in.
-  local turns, most = 40, 1.5 * p.error
-  for i = 0, 24 * turns do
-    local angle = 2 * math.pi * i / 24
-    local r = most * i / (24 * turns)
-    path[#path + 1] = {position = {r * math.cos(angle), r * math.sin(angle), rim - mm(2)}, speed = p.speed}
+  -- Without a lead the hand winds outwards, as fast as pin and hand can follow, until the pin drops in. It presses with
+  -- half of what would turn the pin upright: tilted it is caught by its lower edge and finds the rest of the way; flat
+  -- on the block it would have to meet the hole to a hundredth of a millimetre.
+  local turns, points, most = 6, 24, 1.5 * p.error
+  local stiffness = 1 / (1 / 400 + 1 / 2000)  -- N/m, of hand and coupling
+  local angular_stiffness = 1 / (1 / 2 + 1 / 5)  -- N m/rad
+  local press = 0.5 * angular_stiffness * p.tilt / shaft / stiffness
+  local pace = 0.5 * math.sqrt(stiffness / (p.density * math.pi * shaft ^ 2 * length))  -- rad/s
+  local z = rim + shaft * math.sin(p.tilt) - press
+  for i = 0, points * turns do
+    local angle = 2 * math.pi * i / points
+    local r = most * i / (points * turns)
+    path[#path + 1] = {position = {r * math.cos(angle), r * math.sin(angle), z},
+                       speed = i == 0 and p.speed or math.min(p.speed, pace * r)}
   end
 end
 path[#path + 1] = {position = {0, 0, length / 2 - height / 2 - mm(1)}, speed = p.speed, dwell = 0.3}

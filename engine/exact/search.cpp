@@ -13,6 +13,8 @@ constexpr double kLeanNone = 0.64;  // 40 degrees
 // place lies in the next segment, shall not stand for it.
 constexpr double kOwnFree = 1e-7;  // m
 constexpr double kOwnNone = 1e-6;
+// A segment that slopes towards the surface touches with a part of its length only.
+constexpr double kTouching = 1e-6;  // m: what is as near as this counts as touching
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A feature in the coordinates of the base.
@@ -95,6 +97,7 @@ class Search {
   [[nodiscard]] bool is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t other) const;
   [[nodiscard]] bool decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) const;
   [[nodiscard]] double lean_weight(std::uint32_t sample, const Vector3d& normal) const;
+  [[nodiscard]] static double touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count);
   void add(const Candidate& c, const Feature& feature, double weight, std::uint32_t count, std::uint32_t face);
 
   const ExactBody& mover_;
@@ -187,8 +190,17 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
     if (c.gap_ahead < best.gap_ahead) best = c;
   }
   if (best.gap_ahead == kNever) return;
-  add(best, feature, best.weight * lean_weight(best.sample, best.normal), static_cast<std::uint32_t>(ahead.size()),
-      face);
+  const auto count = static_cast<std::uint32_t>(ahead.size());
+  const double share = touching_share(placed, best, count);
+  add(best, feature, best.weight * share * lean_weight(best.sample, best.normal), count, face);
+}
+
+/// How much of a group's length touches: the overlap at its nearest place is used up where the group, sloping, comes
+/// out of the surface.
+double Search::touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) {
+  const double rise = std::abs(c.normal.dot(placed.tangent(c.place))) * 2 * placed.feature->half_width * count;
+  const double overlap = kTouching + std::max(0.0, -c.gap);
+  return rise > overlap ? overlap / rise : 1;
 }
 
 Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const {
