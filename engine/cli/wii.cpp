@@ -5,103 +5,13 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/geometry/write_file.hpp"
 #include "engine/wii/coverage.hpp"
 #include "engine/wii/place.hpp"
-#include "engine/wii/validate.hpp"
 
 namespace verisim::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-// ---- validate
-
-ordered_json json_of(const wii::ErrorFigures& f) {
-  return {
-      {"rms", f.rms}, {"p95", f.p95}, {"max", f.max}, {"rms_axis", {f.rms_axis.x(), f.rms_axis.y(), f.rms_axis.z()}}};
-}
-
-ordered_json json_of(const wii::ValidationRow& r) {
-  return {{"sensor", r.sensor},
-          {"trajectory", r.trajectory},
-          {"tracker", r.tracker},
-          {"reports", r.reports},
-          {"valid", r.valid},
-          {"position_m", json_of(r.position)},
-          {"orientation_deg", json_of(r.orientation)},
-          {"availability", r.availability},
-          {"false_validity", r.false_validity},
-          {"latency_s", r.latency},
-          {"nees", r.nees},
-          {"nees_upper", r.nees_upper},
-          {"consistent", r.consistent},
-          {"within_95", r.within_95},
-          {"reacquired", r.reacquired},
-          {"longest_return_s", r.longest_return},
-          {"update_ns", r.update_ns}};
-}
-
-template <typename Named>
-std::vector<std::string> names_of(const std::vector<Named>& all) {
-  std::vector<std::string> names;
-  for (const Named& n : all) names.push_back(n.name);
-  return names;
-}
-
-/// Trackers, and each that can with three LEDs.
-std::vector<std::string> contenders() {
-  std::vector<std::string> names = wii::tracker_names();
-  for (const std::string& name : wii::tracker_names()) names.push_back(name + "/3");
-  return names;
-}
-
-template <typename Named>
-std::string help_of(const std::vector<Named>& all) {
-  std::string text;
-  for (const Named& n : all) text += fmt::format("\n  {:<16}{}", n.name, n.what);
-  return text;
-}
-
-void add_validate(CLI::App& wii_command, int& exit_code) {
-  struct Options {
-    wii::ValidationOptions validation;
-    std::string out;
-    bool json = false;
-  };
-  auto* command = wii_command.add_subcommand("validate", "Every tracker against the virtual Wii Remote, as a table");
-  auto o = std::make_shared<Options>();
-  wii::ValidationOptions& v = o->validation;
-  command->add_option("--tracker", v.trackers, "Only these (repeatable); NAME/3: with three LEDs")
-      ->take_all()
-      ->check(CLI::IsMember(contenders()));
-  command->add_option("--trajectory", v.trajectories, "Only these (repeatable)")
-      ->take_all()
-      ->check(CLI::IsMember(names_of(wii::trajectories())));
-  command->add_option("--sensor", v.sensors, "Only these (repeatable; else ideal and wiimote)")
-      ->take_all()
-      ->check(CLI::IsMember(names_of(wii::sensor_cases())));
-  command->add_option("--seed", v.seed, "Seed of the sensor's random streams");
-  command->add_option("-o,--out", o->out, "Also write every figure to this CSV");
-  command->add_flag("--json", o->json, "One JSON object on stdout");
-  command->footer("Trajectories:" + help_of(wii::trajectories()) + "\nSensors:" + help_of(wii::sensor_cases()) +
-                  "\nExample: verisim wii validate --tracker scaat --sensor wiimote -o scaat.csv");
-  command->callback([=, &exit_code] {
-    const std::vector<wii::ValidationRow> rows = wii::validate(o->validation);
-    if (!o->out.empty()) write_file(o->out, wii::csv_of(rows));
-    if (o->json) {
-      ordered_json j;
-      j["rows"] = ordered_json::array();
-      for (const wii::ValidationRow& r : rows) j["rows"].push_back(json_of(r));
-      std::printf("%s\n", j.dump().c_str());
-    } else {
-      std::printf("%s", wii::table_of(rows).c_str());
-    }
-    exit_code = 0;
-  });
-}
-
-// ---- place
 
 struct PlaceCommand {
   std::string trace;
@@ -217,7 +127,7 @@ void add_wii(CLI::App& app, int& exit_code) {
   auto* command =
       app.add_subcommand("wii", "The head trackers: validate them, place a remote, track a trace, speak VRPN");
   command->require_subcommand(1);
-  add_validate(*command, exit_code);
+  add_wii_validate(*command, exit_code);
   add_place(*command, exit_code);
   add_wii_track(*command, exit_code);
   add_wii_serve(*command, exit_code);

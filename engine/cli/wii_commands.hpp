@@ -10,6 +10,7 @@
 
 namespace verisim::cli {
 
+void add_wii_validate(CLI::App& wii_command, int& exit_code);
 void add_wii_track(CLI::App& wii_command, int& exit_code);
 void add_wii_serve(CLI::App& wii_command, int& exit_code);
 void add_wii_listen(CLI::App& wii_command, int& exit_code);

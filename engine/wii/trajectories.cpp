@@ -1,5 +1,6 @@
 #include "engine/wii/trajectories.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -148,6 +149,27 @@ double sum_of_sines(std::span<const Sine> sines, double t) {
   double sum = 0;
   for (const Sine& s : sines) sum += s.amplitude * pinned::sin(2 * pinned::kPi * s.frequency * t + s.phase);
   return sum;
+}
+
+Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, std::vector<Pose> X_LH) {
+  VERISIM_ASSERT(t.size() == X_LH.size());
+  if (t.size() < 2) fail(ErrorKind::input, "{}: a motion needs at least two samples; record for longer", name);
+  for (std::size_t i = 1; i < t.size(); ++i)
+    if (!(t[i] > t[i - 1])) fail(ErrorKind::input, "{}: time does not grow at sample {}; sort the samples", name, i);
+  Trajectory path;
+  path.name = name;
+  path.what = "recorded";
+  path.duration = t.back() - t.front();
+  path.at = [t = std::move(t), X_LH = std::move(X_LH)](double when) {
+    const double at = std::clamp(when + t.front(), t.front(), t.back());
+    const auto after = std::max<std::ptrdiff_t>(1, std::lower_bound(t.begin(), t.end(), at) - t.begin());
+    const auto i = static_cast<std::size_t>(after);
+    const double s = (at - t[i - 1]) / (t[i] - t[i - 1]);
+    const Pose& a = X_LH[i - 1];
+    const Pose& b = X_LH[i];
+    return level_remote(a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s));
+  };
+  return path;
 }
 
 const std::vector<Trajectory>& trajectories() {

@@ -35,6 +35,10 @@ struct Sine {
 };
 [[nodiscard]] double sum_of_sines(std::span<const Sine> sines, double t);
 
+/// A head as it was recorded before a level remote at the origin: positions linear, rotations slerp, the ends held.
+/// Error(input) naming it for fewer than two samples or times that do not grow.
+[[nodiscard]] Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, std::vector<Pose> X_LH);
+
 /// static, grid, sweep-x, sweep-z, natural, natural-yaw, edges, dropout-one, dropout-both, swap, upside-down, tilted,
 /// moving-remote.
 [[nodiscard]] const std::vector<Trajectory>& trajectories();

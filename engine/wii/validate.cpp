@@ -130,7 +130,7 @@ const SensorCase& sensor_case(const std::string& name) {
 }
 
 ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
-                           const ValidationOptions& options) {
+                           const ValidationOptions& options, std::vector<ErrorSample>* history) {
   const Contender who = contender(tracker);
   TrackerSettings settings = options.tracker;
   if (who.triangle && settings.leds.count < 3) settings.leds = LedLayout::triangle();
@@ -143,7 +143,9 @@ ValidationRow validate_one(const std::string& tracker, const Trajectory& path, c
   ValidationFigures figures;
   for (const Sensed& s : all) {
     const Report& report = judged->update(s.report.t, s.report.channels, s.remote);
-    if (s.remote == 0) figures.add(s.report, report);
+    if (s.remote != 0) continue;
+    figures.add(s.report, report);
+    if (history != nullptr) history->push_back(error_of(s.report, report));
   }
   ValidationRow row = figures.result();
   row.tracker = tracker;
@@ -159,17 +161,17 @@ std::vector<ValidationRow> validate(const ValidationOptions& options) {
     trackers = tracker_names();
     trackers.emplace_back("scaat/3");
   }
-  std::vector<std::string> paths = options.trajectories;
-  if (paths.empty())
-    for (const Trajectory& t : trajectories()) paths.push_back(t.name);
+  std::vector<Trajectory> paths = options.recorded;
+  if (paths.empty() && options.trajectories.empty()) paths = trajectories();
+  for (const std::string& name : options.trajectories) paths.push_back(trajectory(name));
   const std::vector<std::string> sensors =
       options.sensors.empty() ? std::vector<std::string>{"ideal", "wiimote"} : options.sensors;
 
   std::vector<ValidationRow> rows;
   for (const std::string& sensor : sensors)
-    for (const std::string& path : paths)
+    for (const Trajectory& path : paths)
       for (const std::string& tracker : trackers)
-        rows.push_back(validate_one(tracker, trajectory(path), sensor_case(sensor), options));
+        rows.push_back(validate_one(tracker, path, sensor_case(sensor), options));
   return rows;
 }
 

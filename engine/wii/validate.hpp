@@ -41,6 +41,7 @@ struct ValidationRow {
   /// right, above if it promises too much. Errors repeat from report to report (rounding stands still with the head),
   /// so the chi-square bounds count only as many independent samples as the autocorrelation of the series leaves.
   double nees = 0;
+  double nees_lower = 0;      ///< 2.5 % bound of the mean: below it the covariance is larger than the errors need
   double nees_upper = 0;      ///< 97.5 % bound of the mean
   double within_95 = 0;       ///< share of errors inside their own 95 % ellipsoid
   bool consistent = false;    ///< nees <= nees_upper: never too sure
@@ -51,17 +52,26 @@ struct ValidationRow {
 
 struct ValidationOptions {
   std::vector<std::string> trackers;      ///< empty: all, and scaat/3
-  std::vector<std::string> trajectories;  ///< empty: all
+  std::vector<std::string> trajectories;  ///< empty: all, unless motions are recorded
   std::vector<std::string> sensors;       ///< empty: ideal and wiimote
   std::uint64_t seed = 1;
-  TrackerSettings tracker;  ///< of every tracker; LEDs come from the tracker's own glasses
+  TrackerSettings tracker;           ///< of every tracker; LEDs come from the tracker's own glasses
+  std::vector<Trajectory> recorded;  ///< further motions; alone, if no others are named
   bool measure_time = true;
+};
+
+/// How far off one report was.
+struct ErrorSample {
+  double t = 0;  ///< s
+  bool valid = false;
+  double error = 0;     ///< m, of the position
+  double bound_95 = 0;  ///< m: longest half axis of the ellipsoid that should hold 95 % of the errors
 };
 
 /// One run of a tracker; "NAME/3" is that tracker with three LEDs. Glasses are two LEDs, or the triangle for three-led
 /// and NAME/3; stereo gets a second remote 0.5 m beside the first, turned towards the head.
 [[nodiscard]] ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
-                                         const ValidationOptions& options);
+                                         const ValidationOptions& options, std::vector<ErrorSample>* history = nullptr);
 /// Every combination, trackers innermost: about 1 ms per simulated second each. Error(input) for a name that is not
 /// known.
 [[nodiscard]] std::vector<ValidationRow> validate(const ValidationOptions& options);
@@ -69,5 +79,8 @@ struct ValidationOptions {
 /// The table as text for a terminal, or as CSV with every figure.
 [[nodiscard]] std::string table_of(const std::vector<ValidationRow>& rows);
 [[nodiscard]] std::string csv_of(const std::vector<ValidationRow>& rows);
+/// Per sensor one table in Markdown: a line per trajectory, a column per tracker, each position rms in cm with the
+/// availability beside it.
+[[nodiscard]] std::string markdown_of(const std::vector<ValidationRow>& rows);
 
 }  // namespace verisim::wii

@@ -1,6 +1,7 @@
 #include "engine/wii/validation_figures.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -51,9 +52,9 @@ double independent_samples(const std::vector<double>& x) {
   return std::max(1.0, static_cast<double>(x.size()) / sum);
 }
 
-/// 97.5 % point of chi-square(n) / n, by Wilson and Hilferty (1931).
-double chi_square_upper(double n) {
-  const double cube_root = 1 - 2 / (9 * n) + kNormal975 * std::sqrt(2 / (9 * n));
+/// The point of chi-square(n) / n at `z` standard deviations of the normal distribution, by Wilson and Hilferty (1931).
+double chi_square_point(double n, double z) {
+  const double cube_root = std::max(0.0, 1 - 2 / (9 * n) + z * std::sqrt(2 / (9 * n)));
   return cube_root * cube_root * cube_root;
 }
 
@@ -102,6 +103,16 @@ void ValidationFigures::add_valid(const SensedReport& sensed, const Report& repo
   velocity_square_ += velocity.squaredNorm();
 }
 
+ErrorSample error_of(const SensedReport& sensed, const Report& report) {
+  ErrorSample sample{sensed.t, report.valid, 0, 0};
+  if (!report.valid) return sample;
+  sample.error = (report.pose.position - sensed.X_LH.position).norm();
+  Eigen::SelfAdjointEigenSolver<Matrix3d> axes;
+  axes.computeDirect(report.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  sample.bound_95 = std::sqrt(kChiSquare95 * std::max(0.0, axes.eigenvalues().maxCoeff()));
+  return sample;
+}
+
 ValidationRow ValidationFigures::result() const {
   ValidationRow row = counts_;
   row.valid = static_cast<int>(position_errors_.size());
@@ -111,7 +122,9 @@ ValidationRow ValidationFigures::result() const {
   row.false_validity = blind_ > 0 ? static_cast<double>(valid_blind_) / blind_ : 0;
   row.latency = velocity_square_ > 0 ? -error_along_velocity_ / velocity_square_ : 0;
   row.nees = mean_of(nees_);
-  row.nees_upper = chi_square_upper(3 * independent_samples(nees_));
+  const double samples = 3 * independent_samples(nees_);
+  row.nees_lower = chi_square_point(samples, -kNormal975);
+  row.nees_upper = chi_square_point(samples, kNormal975);
   const auto inside = std::count_if(nees_.begin(), nees_.end(), [](double n) { return 3 * n <= kChiSquare95; });
   row.within_95 = nees_.empty() ? 0 : static_cast<double>(inside) / static_cast<double>(nees_.size());
   row.consistent = row.nees <= row.nees_upper;

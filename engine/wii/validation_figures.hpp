@@ -35,4 +35,7 @@ class ValidationFigures {
   Vector3d last_truth_ = Vector3d::Zero();
 };
 
+/// One report against the truth.
+[[nodiscard]] ErrorSample error_of(const SensedReport& sensed, const Report& report);
+
 }  // namespace verisim::wii

@@ -4,6 +4,15 @@
 
 namespace verisim::wii {
 
+namespace {
+
+char mark_of(const ValidationRow& r) {
+  if (r.nees > r.nees_upper) return '!';
+  return r.nees < r.nees_lower ? '-' : ' ';
+}
+
+}  // namespace
+
 std::string table_of(const std::vector<ValidationRow>& rows) {
   std::string text;
   std::string heading;
@@ -18,9 +27,11 @@ std::string table_of(const std::vector<ValidationRow>& rows) {
         "  {:<26}{:>9.2f}{:>8.2f}{:>8.2f}{:>9.2f}{:>8.2f}{:>8.2f}{:>8.1f}{:>8.1f}{:>7.1f}{}{:>8.1f}{:>8.0f}\n",
         r.tracker, 100 * r.position.rms, 100 * r.position.p95, 100 * r.position.max, r.orientation.rms,
         r.orientation.rms_axis.y(), r.orientation.rms_axis.z(), 100 * r.availability, 1000 * r.latency, r.nees,
-        r.consistent ? ' ' : '!', 100 * r.within_95, r.update_ns);
+        mark_of(r), 100 * r.within_95, r.update_ns);
   }
-  return text + "\n! = errors beyond what the covariance promises (97.5 % bound of chi-square)\n";
+  return text +
+         "\nnees: ! = errors beyond what the covariance promises, - = well within it (2.5 and 97.5 % bounds of "
+         "chi-square)\n";
 }
 
 std::string csv_of(const std::vector<ValidationRow>& rows) {
@@ -28,17 +39,42 @@ std::string csv_of(const std::vector<ValidationRow>& rows) {
       "sensor,trajectory,tracker,reports,valid,availability,false_validity,reacquired,longest_return_s,"
       "position_rms_m,position_p95_m,position_max_m,position_rms_x_m,position_rms_y_m,position_rms_z_m,"
       "orientation_rms_deg,orientation_p95_deg,orientation_max_deg,orientation_rms_x_deg,orientation_rms_y_deg,"
-      "orientation_rms_z_deg,latency_s,nees,nees_upper,consistent,within_95,update_ns\n";
+      "orientation_rms_z_deg,latency_s,nees,nees_lower,nees_upper,consistent,within_95,update_ns\n";
   const auto figures = [](const ErrorFigures& f) {
     return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", f.rms, f.p95, f.max, f.rms_axis.x(), f.rms_axis.y(),
                        f.rms_axis.z());
   };
   for (const ValidationRow& r : rows)
-    text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:d},{:.6g},{:.4g}\n",
+    text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:d},{:.6g},{:.4g}\n",
                         r.sensor, r.trajectory, r.tracker, r.reports, r.valid, r.availability, r.false_validity,
                         r.reacquired, r.longest_return, figures(r.position), figures(r.orientation), r.latency, r.nees,
-                        r.nees_upper, r.consistent, r.within_95, r.update_ns);
+                        r.nees_lower, r.nees_upper, r.consistent, r.within_95, r.update_ns);
   return text;
+}
+
+std::string markdown_of(const std::vector<ValidationRow>& rows) {
+  std::string text;
+  std::string sensor;
+  std::string path;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ValidationRow& r = rows[i];
+    if (r.sensor != sensor) {
+      std::string rule = "|---|";
+      text += fmt::format("{}| {} |", sensor.empty() ? "" : "\n\n", r.sensor);
+      for (std::size_t j = i; j < rows.size() && rows[j].sensor == r.sensor && rows[j].trajectory == r.trajectory;
+           ++j) {
+        text += fmt::format(" {} |", rows[j].tracker);
+        rule += "---:|";
+      }
+      text += "\n" + rule;
+      sensor = r.sensor;
+      path.clear();
+    }
+    if (r.trajectory != path) text += fmt::format("\n| {} |", r.trajectory);
+    path = r.trajectory;
+    text += fmt::format(" {:.2f} ({:.1f}) |", 100 * r.position.rms, 100 * r.availability);
+  }
+  return text + "\n";
 }
 
 }  // namespace verisim::wii
