@@ -2,9 +2,11 @@
 import csv
 import json
 import math
+import os
 import unittest
+import xml.etree.ElementTree
 
-from program import ProgramTest
+from program import SOURCE, ProgramTest
 
 COLUMNS = "t,battery,gx,gy,gz,x1,y1,s1,x2,y2,s2,x3,y3,s3,x4,y4,s4"
 AT_REST = "0.75,0,0,1,609,384,4,415,384,4,-1,-1,-1,-1,-1,-1"
@@ -61,6 +63,46 @@ class Validate(ProgramTest):
         text = self.succeed("wii", "validate", "--sensor", "ideal").stdout
         for word in ["geometric", "vrpn-compatible", "three-led", "scaat", "stereo", "natural-yaw", "dropout-both"]:
             self.assertIn(word, text)
+
+    def test_the_readme_shows_what_is_printed(self):
+        table = self.succeed("wii", "validate", "--sensor", "ideal", "--markdown").stdout
+        with open(os.path.join(SOURCE, "README.md")) as readme:
+            self.assertIn(table, readme.read(), "verisim wii validate --sensor ideal --markdown")
+        self.assertEqual(len(table.splitlines()), 2 + 13)
+
+    def test_the_readmes_picture_is_what_is_drawn(self):
+        self.succeed("wii", "validate", "-o", self.path("validation.csv"))
+        with open(self.path("validation.svg")) as here, open(os.path.join(SOURCE, "engine/wii/validation.svg")) as shipped:
+            self.assertEqual(here.read(), shipped.read(), "verisim wii validate -o engine/wii/validation.csv")
+        with open(self.path("validation.csv")) as f:
+            rows = list(csv.DictReader(f))
+        self.assertEqual(len(rows), 13 * 6 * 2)
+        for row in rows:
+            self.assertLessEqual(float(row["nees_lower"]), float(row["nees_upper"]))
+
+    def test_plots_errors_over_time_of_trajectories_that_are_named(self):
+        self.succeed("wii", "validate", "--trajectory", "dropout-both", "--tracker", "scaat", "-o", self.path("a.csv"))
+        for sensor in ["ideal", "wiimote"]:
+            plot = xml.etree.ElementTree.parse(self.path(f"a-dropout-both-{sensor}.svg")).getroot()
+            words = [t.text for t in plot.iter("{http://www.w3.org/2000/svg}text")]
+            self.assertIn("scaat", words)
+            paths = [p.get("d") for p in plot.iter("{http://www.w3.org/2000/svg}path")]
+            self.assertEqual(max(d.count("M") for d in paths), 11, "a line interrupted by ten dropouts")
+
+    def test_a_recorded_motion_is_a_trajectory(self):
+        lines = ["# verisim-trace 1", "# kind: haptic", "# rate_hz: 60", "# source: a test", "t,px,py,pz,qx,qy,qz,qw"]
+        for i in range(300):
+            s = math.sin(i / 60)
+            lines.append(f"{5 + i / 60},{0.1 * s},{0.05 * s},{1 + 0.2 * s},0,0,{math.sin(0.1 * s)},{math.cos(0.1 * s)}")
+        motion = self.write("nod.csv", "\n".join(lines) + "\n")
+        rows = self.run_json("wii", "validate", "--motion", motion, "--sensor", "ideal")["rows"]
+        self.assertEqual({row["trajectory"] for row in rows}, {"nod"})
+        self.assertEqual({row["tracker"] for row in rows} & {"vrpn-compatible", "scaat"}, {"vrpn-compatible", "scaat"})
+        for row in rows:
+            self.assertEqual(row["reports"], 498)
+            if row["tracker"] != "vrpn-compatible":
+                self.assertLess(row["position_m"]["rms"], 0.005, row["tracker"])
+        self.refuse(3, "px", "wii", "validate", "--motion", self.write("w.csv", trace()))
 
     def test_figures_are_the_same_in_every_run_but_for_the_time(self):
         def figures():

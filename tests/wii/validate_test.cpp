@@ -63,6 +63,43 @@ TEST(Validate, GivesARowForEveryCombinationAndTheSameOneTwice) {
   for (const std::string& name : tracker_names()) EXPECT_NE(table_of(rows).find(name), std::string::npos);
 }
 
+// A quarter of the way between two samples, and held beyond the last.
+TEST(RecordedTrajectory, InterpolatesBetweenItsSamples) {
+  const Pose last{{0.4, 0, 1}, rotation_from_vector({0, 0, 0.8})};
+  const Trajectory path = recorded_trajectory("nod", {5, 7}, {Pose{{0, 0, 1}, Quaterniond::Identity()}, last});
+  EXPECT_EQ(path.duration, 2);
+  const Pose quarter = path.at(0.5).X_WH;
+  EXPECT_NEAR(quarter.position.x(), 0.1, 1e-15);
+  EXPECT_NEAR(vector_from_rotation(quarter.rotation).z(), 0.2, 1e-15);
+  EXPECT_EQ(path.at(9).X_WH.position, last.position);
+  EXPECT_EQ(path.at(-1).X_WH.position.x(), 0);
+}
+
+TEST(RecordedTrajectory, RefusesTooLittleAndTimeThatDoesNotGrow) {
+  EXPECT_THROW((void)recorded_trajectory("nod", {5}, {Pose()}), Error);
+  EXPECT_THROW((void)recorded_trajectory("nod", {5, 5}, {Pose(), Pose()}), Error);
+}
+
+// A mean of squares that is far below one is said to be so, and one far above too: n = 3 x 1000 independent samples.
+TEST(ValidationFigures, KnowBothBoundsOfConsistency) {
+  ValidationFigures careful;
+  const RandomStream random(1, "errors");
+  Report report;
+  report.valid = true;
+  report.covariance = Matrix6d::Identity() * 1e-4;
+  for (std::uint64_t k = 0; k < 1000; ++k) {
+    SensedReport truth;
+    truth.t = 0.01 * static_cast<double>(k);
+    truth.led_in_view = 3;
+    report.pose.position = 0.001 * Vector3d(random.normal(3 * k), random.normal(3 * k + 1), random.normal(3 * k + 2));
+    careful.add(truth, report);
+  }
+  const ValidationRow row = careful.result();
+  EXPECT_NEAR(row.nees, 0.01, 0.001);
+  EXPECT_NEAR(row.nees_lower, 0.95, 0.02);  // 1 - 1.96 sqrt(2 / 3000)
+  EXPECT_NEAR(row.nees_upper, 1.05, 0.02);
+}
+
 TEST(Validate, RefusesUnknownNames) {
   EXPECT_THROW((void)row_of("geometric", "statik"), Error);
   EXPECT_THROW((void)row_of("geometri", "static"), Error);
