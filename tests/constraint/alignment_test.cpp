@@ -54,25 +54,6 @@ TEST(Alignment, IsOneWhenEverythingCoincides) {
   }
 }
 
-// Eq. 8.2 with c = 10, dc = 5 mm: parallel axes 1 mm apart, theta = 0: 0.5 + 0.5 e^-2.
-TEST(AlignmentPavlik, GivesTheWorkedNumberForParallelAxes) {
-  const double expected = 0.5 + 0.5 * std::exp(-2.0);
-  EXPECT_NEAR(alpha(AlignmentMeasure::pavlik, peg(), {{0.001, 0, 0.03}, Quaterniond::Identity()}), expected,
-              tolerance(1e-12));
-}
-
-// One degree about the middle: d = 0, so 0.5 e^-0.0174533 + 0.5 = 0.991349: it hardly notices.
-TEST(AlignmentPavlik, GivesTheWorkedNumberForATilt) {
-  EXPECT_NEAR(alpha(AlignmentMeasure::pavlik, peg(), tilted(kDegree)), 0.5 * std::exp(-kDegree) + 0.5,
-              tolerance(1e-12));
-}
-
-// Eq. 8.1: theta0 = voxel / engaged length = 4.5 / 200, d0 = 4.5 mm. 1 degree and 2 mm square to the tilt.
-TEST(AlignmentFaas, GivesTheWorkedNumber) {
-  const double expected = 0.5 * std::exp(-kDegree * 200 / 4.5) + 0.5 * std::exp(-2.0 / 4.5);
-  EXPECT_NEAR(alpha(AlignmentMeasure::faas, peg(), tilted(kDegree, {0.002, 0, 0})), expected, tolerance(1e-12));
-}
-
 // A clearance of nothing at all (published: 0/0) and axes that are exactly parallel (published: 0/0).
 TEST(Alignment, IsFiniteForZeroClearanceAndCoincidentAxes) {
   const Constraint tight = peg(0.075);

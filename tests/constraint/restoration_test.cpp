@@ -17,23 +17,6 @@ using test::tolerance;
 
 const Vector3d kZ = Vector3d::UnitZ();
 
-// ORACLES section 2, eq. 8.8. Every inexact intermediate is below 4: one rounding is at most 2^-52, fewer than ten add.
-TEST(RestoreCylindrical, GivesTheWorkedNumber) {
-  const Vector3d f = restore_cylindrical(Vector3d::Zero(), kZ, {3, 4, 5}, {1, 2, 3}, 0.5);
-  EXPECT_LE((f - Vector3d(1.16, 1.88, 1.5)).norm(), tolerance(10 * 0x1p-52));
-}
-
-// ORACLES section 2, eq. 8.9: exact in binary.
-TEST(RestorePlanar, GivesTheWorkedNumbers) {
-  EXPECT_EQ(restore_planar(kZ, {1, 2, 3}, 0.5), Vector3d(0.5, 1, 1.5));
-  EXPECT_EQ(restore_planar(kZ, {1, 2, -3}, 0.5), Vector3d(0.5, 1, -3));
-}
-
-TEST(RestoreCylindrical, LeavesAForceOnTheAxisAsItCame) {
-  const Vector3d f(1, 2, 3);
-  EXPECT_EQ(restore_cylindrical({1, 1, 1}, kZ, {1, 1, 7}, f, 0.5), f);
-}
-
 /// One of each field of normals, fully aligned, about the origin and z.
 std::vector<ActiveConstraint> all_fields(double alpha) {
   std::vector<ActiveConstraint> all;
