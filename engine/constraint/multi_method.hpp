@@ -108,6 +108,14 @@ template <typename List, typename A, typename B>
   }
 }
 
+/// What is known to be alternative I: std::get would ask once more.
+template <std::size_t I, typename Variant>
+[[nodiscard]] inline const auto& known_to_be(const Variant& v) {
+  const auto* alternative = std::get_if<I>(&v);
+  if (alternative == nullptr) __builtin_unreachable();
+  return *alternative;
+}
+
 template <typename Variant>
 using Cell = Constraint (*)(const Variant&, const Variant&, const Tolerances&);
 
@@ -120,8 +128,8 @@ constexpr Cell<Variant> cell() {
     return nullptr;
   } else {
     return +[](const Variant& a, const Variant& b, const Tolerances& tolerances) {
-      const auto& first = *std::get_if<I>(&a);
-      const auto& second = *std::get_if<J>(&b);
+      const auto& first = known_to_be<I>(a);
+      const auto& second = known_to_be<J>(b);
       if (!match<List>(first, second, tolerances)) return Constraint();
       return make<List>(first, second);
     };

@@ -74,13 +74,6 @@ void recognize_all(const Set& first, const Set& second, const Tolerances& tolera
   }
 }
 
-/// One side of a result, filled from whatever the shape has, without a question asked.
-template <typename Shape>
-void fill(ConstraintSide& side, const Bounded<Shape>& bounded) {
-  side.point = side.direction = Vector3d::Constant(bounded.half_length);
-  side.radius = side.half_length = side.detail = bounded.tangent;
-}
-
 /// What dispatch and the result cost by themselves: std::visit, a full Constraint by value.
 void visit_all(const Set& first, const Set& second, const Tolerances& /*tolerances*/) {
   for (const FiveTypes& a : first) {
@@ -88,8 +81,8 @@ void visit_all(const Set& first, const Set& second, const Tolerances& /*toleranc
       const Constraint c = std::visit(
           [](const auto& bounded_a, const auto& bounded_b) {
             Constraint full;
-            fill(full.a, bounded_a);
-            fill(full.b, bounded_b);
+            full.a = recognizing::side_of(bounded_a);
+            full.b = recognizing::side_of(bounded_b);
             return full;
           },
           a, b);

@@ -98,6 +98,37 @@ TEST(ConstraintMemo, HandsOverBetweenConvexRimsOnly) {
   }
 }
 
+TEST(ConstraintMemo, DoesNotMindAnEntityThatTouchesNoVoxel) {
+  const std::vector<std::vector<std::uint32_t>> sets = {{}, {0}};
+  const std::vector<Entity> with_more = {test::cylinder(0.075, /*hole=*/true), test::cylinder(0.0751, /*hole=*/true)};
+  const EntitySets a(with_more, sets);
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  const Candidates found = memo.candidates(memo.look_up(1, pin::side));
+  ASSERT_EQ(found.count, 1);
+  EXPECT_EQ(memo.constraint(found.constraint[0]).a.radius, 0.075);
+  EXPECT_EQ(memo.counts().recognitions, 1U);
+}
+
+// A freeform part: as many sets as faces, none of them with an equation. Pairs beyond the memo's room are found anew,
+// to nothing each time, and nothing grows.
+TEST(ConstraintMemo, FallsBackForThousandsOfFreeformFaces) {
+  constexpr std::uint32_t kFaces = 20000;
+  std::vector<std::vector<std::uint32_t>> sets(1);
+  for (std::uint32_t face = 0; face < kFaces; ++face) sets.push_back({face});
+  const EntitySets a(std::vector<Entity>(kFaces, Bounded<OtherSurface>()), sets);
+  const EntitySets b = test::pin();
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  const std::uint64_t before = allocations;
+  for (FeatureSetId id = 0; id < a.size(); ++id) {
+    EXPECT_EQ(memo.candidates(memo.look_up(id, pin::side)).count, 0);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(memo.constraints_known(), 0U);
+  EXPECT_EQ(memo.counts().misses_null, kFaces + 1);
+  EXPECT_EQ(memo.counts().overflows, kFaces + 1 - MemoLimits().pairs);
+}
+
 // A full memo is slow, not wrong.
 TEST(ConstraintMemo, WithoutRoomAnswersTheSame) {
   const EntitySets a = test::block_with_hole();
