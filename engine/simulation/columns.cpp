@@ -98,7 +98,7 @@ void Simulation::Implementation::make_schema() {
   add("/cost/voxels_read", Dtype::u32, 1, "1", "voxels read");
   add("/cost/contacts", Dtype::u32, 1, "1", "contacts found");
   add("/cost/lookups", Dtype::u32, 1, "1", "pairs of feature sets looked up");
-  add("/cost/recognitions", Dtype::u32, 1, "1", "pairs of feature sets recognized");
+  add("/cost/recognitions", Dtype::u32, 1, "1", "pairs of entities that recognition looked at");
   add("/cost/exact_samples", Dtype::u32, 1, "1", "samples of precise edges tried against precise faces");
   add("/cost/solver_steps", Dtype::u32, 1, "1", "Newton iterations of the exact response");
   for (const auto& head : heads) add(reports_of(*head), Dtype::u32, 1, "1", "reports tracked");
