@@ -24,9 +24,14 @@ local shaft = (p.nominal + shaft_high - share * (shaft_high - shaft_low)) / 2  -
 local height, length = 1.5 * p.nominal, 2 * p.nominal
 local voxelsize = math.min(mm(4.5), p.nominal / 5)
 
+-- How firmly the hand holds the pin's direction [N m/rad]. With a lead the parts put each other straight in a loose hand;
+-- without one it is firm enough that 2 N at the pin's rim turn it by half of the tilt only.
+local grip = 2
+if p.chamfer <= 0 then grip = math.max(grip, 1.4 * 4 * shaft / math.max(p.tilt, deg(0.5))) end
+
 defineSimulationParameters{
   hybrid = p.hybrid, integrator = "implicit", duration = p.duration > 0 and p.duration or nil,
-  maxStiffness = 2000, maxAngularStiffness = 5, maxCouplingForce = 35, maxCouplingTorque = 3,
+  maxStiffness = 2000, maxAngularStiffness = 2.5 * grip, maxCouplingForce = 35, maxCouplingTorque = 3,
 }
 
 local bore = Solid.cylinder{radius = hole, height = height}
@@ -67,10 +72,10 @@ if p.chamfer <= 0 then
   -- Without a lead the hand winds outwards, as fast as pin and hand can follow, until the pin drops in. It presses with
   -- half of what would turn the pin upright: tilted it is caught by its lower edge and finds the rest of the way; flat
   -- on the block it would have to meet the hole to a hundredth of a millimetre.
-  local turns, points, most = 6, 24, 1.5 * p.error
+  local points, most = 24, p.error + 0.5 * half * p.tilt + mm(0.5)  -- upright by half its tilt the tip is shifted, too
+  local turns = math.ceil(most / mm(0.2))
   local stiffness = 1 / (1 / 400 + 1 / 2000)  -- N/m, of hand and coupling
-  local angular_stiffness = 1 / (1 / 2 + 1 / 5)  -- N m/rad
-  local press = 0.5 * angular_stiffness * p.tilt / shaft / stiffness
+  local press = 0.5 * grip / 1.4 * p.tilt / shaft / stiffness
   local pace = 0.5 * math.sqrt(stiffness / (p.density * math.pi * shaft ^ 2 * length))  -- rad/s
   local z = rim + shaft * math.sin(p.tilt) - press
   for i = 0, points * turns do
@@ -84,7 +89,7 @@ path[#path + 1] = {position = {0, 0, length / 2 - height / 2 - mm(1)}, speed = p
 
 local hand = Devices.Hand{
   name = "hand", path = path, error = error_of_middle, angularError = {p.tilt * ax, p.tilt * ay, 0},
-  tremor = p.tremor, lead = 0.025,
+  tremor = p.tremor, lead = 0.025, angularStiffness = grip,
 }
 addDevice(hand)
 grasp(hand, pin)

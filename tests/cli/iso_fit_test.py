@@ -1,0 +1,60 @@
+"""Fits of ISO 286 in the driven scene: what has clearance goes together in every trial, what has interference in none.
+VERISIM_SEEDS=200 is the long form; each trial is one seed of one nominal size, fit and size within the tolerances."""
+import math
+import os
+import unittest
+
+import h5py
+import numpy
+
+from program import ProgramTest, SOURCE
+
+SEEDS = int(os.environ.get("VERISIM_SEEDS", "1"))
+NOMINALS = [10, 25, 75, 120]  # mm
+SPEED = 0.03    # m/s, the hand's
+STRENGTH = 35   # N, at most through the coupling
+STEP = 0.001    # s
+
+
+class IsoFit(ProgramTest):
+    def trial(self, seed, nominal, fit, **settings):
+        run_file = self.path("run.h5")
+        pairs = {"nominal": f"mm({nominal})", "fit": fit, **settings}
+        options = [word for key, value in pairs.items() for word in ("--set", f"{key}={value}")]
+        summary = self.run_json("run", os.path.join(SOURCE, "scenarios", "iso_fit.lua"), "-o", run_file, "--seed", seed,
+                                *options)
+        self.assert_forces_are_continuous(run_file, nominal, f"{nominal} mm {fit} {settings} seed {seed}")
+        return summary["outcome"] == "inserted"
+
+    def assert_forces_are_continuous(self, run_file, nominal, what):
+        """From frame to frame a force changes by no more than stops the pin at the hand's speed, twice as fast for a
+        pin that snaps upright, and what the hand can push."""
+        d = nominal * 1e-3
+        mass = 7800 * math.pi / 4 * d * d * 2 * d
+        with h5py.File(run_file) as f:
+            force = f["state/link/block~pin/wrench"][:, :3]
+        steps = numpy.linalg.norm(numpy.diff(force, axis=0), axis=1)
+        self.assertLessEqual(steps.max(), 2 * mass * SPEED / STEP + STRENGTH, what)
+
+    def trials(self, fits, sizes):
+        return [(seed, nominal, fit, size) for nominal in NOMINALS for fit in fits for size in sizes
+                for seed in range(1, SEEDS + 1)]
+
+    def test_clearance_goes_together_in_every_trial(self):
+        for seed, nominal, fit, size in self.trials(["H7/g6", "H8/f7"], ["loosest", "mid", "tightest"]):
+            with self.subTest(nominal=nominal, fit=fit, size=size, seed=seed):
+                self.assertTrue(self.trial(seed, nominal, fit, size=size))
+
+    def test_interference_goes_together_in_none(self):
+        for seed, nominal, fit, size in self.trials(["H7/p6", "H7/s6"], ["mid", "tightest"]):
+            with self.subTest(nominal=nominal, fit=fit, size=size, seed=seed):
+                self.assertFalse(self.trial(seed, nominal, fit, size=size))
+
+    def test_a_sharp_rim_is_found_by_the_spiral_in_95_of_100(self):
+        trials = self.trials(["H7/g6"], ["mid"])
+        found = sum(self.trial(seed, nominal, fit, size=size, chamfer=0) for seed, nominal, fit, size in trials)
+        self.assertGreaterEqual(found, 0.95 * len(trials))
+
+
+if __name__ == "__main__":
+    unittest.main()
