@@ -14,6 +14,8 @@ constexpr double kStandardGravity = 9.80665;  // m/s^2 per g
 constexpr double kSizeAtOneMetre = 4;         // reference/wii/README.md: floor(4 / distance + 0.5), 1 to 15
 constexpr double kBasePixel = 8;              // the sensor proper has 128 x 96 pixels
 constexpr double kBatteryChannel = 0.75;
+constexpr std::size_t kPointsMax = 32;         // bits of SensedReport::led_in_view
+constexpr std::uint64_t kSourcesPerTurn = 16;  // of the pixel noise's counter
 
 RandomStream stream(std::uint64_t seed, std::string_view remote, const char* what) {
   return {seed, std::string(remote) + "/" + what};
@@ -26,7 +28,9 @@ void require(bool good, const char* what) {
 void check(const RemoteSettings& s) {
   require(s.fov.horizontal > 0 && s.fov.horizontal < pinned::kPi && s.fov.vertical > 0 && s.fov.vertical < pinned::kPi,
           "the field of view must lie between 0 and 180 degrees");
-  require(!s.leds.empty() && s.leds.size() <= kLedsMax, "1 to 4 LEDs can be told apart by four slots");
+  require(!s.leds.empty() && s.leds.size() <= kPointsMax, "1 to 32 LEDs can be simulated");
+  require(s.leds.size() <= kSlots || s.slot_rule == SlotRule::first_free,
+          "more LEDs than slots have no slots of their own; let them take the first that is free");
   require(s.subpixels == 1 || s.subpixels == 2 || s.subpixels == 4 || s.subpixels == 8, "subpixels is 1, 2, 4 or 8");
   require(s.pixel_noise >= 0 && s.accelerometer_noise >= 0, "noise cannot be negative");
   require(s.battery >= 0 && s.intensity_min >= 0, "battery and intensity_min cannot be negative");
@@ -105,7 +109,9 @@ bool VirtualRemote::image(std::uint64_t k, int source, const Vector3d& p_R, doub
   const double b = p_R.y() / p_R.z();
   const double r2 = a * a + b * b;
   const double radial = 1 + settings_.distortion_k1 * r2 + settings_.distortion_k2 * r2 * r2;
-  const std::uint64_t counter = 32 * k + 2 * static_cast<std::uint64_t>(source);
+  const auto number = static_cast<std::uint64_t>(source);
+  const std::uint64_t counter =
+      (number / kSourcesPerTurn << 40U) + 2 * (kSourcesPerTurn * k + number % kSourcesPerTurn);
   const auto sense_axis = [&](double ideal, std::uint64_t c) {
     double x = ideal;
     if (settings_.subpixel_error > 0) x += settings_.subpixel_error * pinned::sin(2 * pinned::kPi * ideal / kBasePixel);
@@ -132,7 +138,7 @@ void VirtualRemote::find_spots(std::uint64_t k, double t, const Situation& situa
     const Lamp& lamp = settings_.lamps[i];
     if (t < lamp.begin || t >= lamp.end) continue;
     const double distance_square = (situation.X_WR.position - lamp.p_W).squaredNorm();
-    look(kLedsMax + static_cast<int>(i), lamp.p_W, lamp.power / distance_square);
+    look(first_lamp() + static_cast<int>(i), lamp.p_W, lamp.power / distance_square);
   }
 }
 
@@ -144,7 +150,7 @@ void VirtualRemote::assign_slots() {
     if (holder != kNobody && !seen(holder)) holder = kNobody;
   for (const Spot& spot : spots_) {
     if (std::find(holder_.begin(), holder_.end(), spot.source) != holder_.end()) continue;
-    if (settings_.slot_rule == SlotRule::own && spot.source < kLedsMax) {
+    if (settings_.slot_rule == SlotRule::own && spot.source < first_lamp()) {
       holder_[static_cast<std::size_t>(spot.source)] = spot.source;
       continue;
     }
@@ -195,7 +201,7 @@ SensedReport VirtualRemote::sense(std::uint64_t k, const Situation& situation) {
   assign_slots();
   write_slots(report.t, report.channels);
   for (const int holder : holder_)
-    if (holder != kNobody && holder < kLedsMax) report.led_in_view |= 1U << holder;
+    if (holder != kNobody && holder < first_lamp()) report.led_in_view |= 1U << holder;
   return report;
 }
 

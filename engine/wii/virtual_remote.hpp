@@ -7,6 +7,7 @@
 // given the channels alone.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -68,6 +69,7 @@ enum class SlotRule {
 
 struct RemoteSettings {
   FieldOfView fov;
+  /// Up to 32; trackers take up to kLedsMax of them, a report shows at most four.
   std::vector<Led> leds = {Led{{0.075, 0, 0}}, Led{{-0.075, 0, 0}}};
 
   // Image                            off        on
@@ -113,7 +115,7 @@ struct SensedReport {
 
 class VirtualRemote {
  public:
-  /// Error(input) for settings outside their range, more than kLedsMax LEDs included.
+  /// Error(input) for settings outside their range, more LEDs than slots under SlotRule::own included.
   VirtualRemote(RemoteSettings settings, std::uint64_t seed, std::string_view name);
 
   /// When report k is taken, jitter included. Grows with k.
@@ -128,10 +130,11 @@ class VirtualRemote {
  private:
   static constexpr int kNobody = -1;
   struct Spot {
-    int source = kNobody;  ///< LED i, or kLedsMax + lamp
+    int source = kNobody;  ///< LED i, or first_lamp() + lamp
     Blob blob;
   };
 
+  [[nodiscard]] int first_lamp() const { return std::max(kLedsMax, static_cast<int>(settings_.leds.size())); }
   [[nodiscard]] bool hidden(const Situation& situation, const Vector3d& p_W) const;
   [[nodiscard]] double led_intensity(std::size_t led, double t, const Situation& situation) const;
   [[nodiscard]] bool image(std::uint64_t k, int source, const Vector3d& p_R, double intensity, Blob& blob) const;

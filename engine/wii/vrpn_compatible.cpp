@@ -94,11 +94,17 @@ class VrpnCompatible final : public Tracker {
       flip_ = Flip::unknown;
       return;
     }
+    const Report before = report_;
     compute(level);
-    if (flip_ != Flip::unknown) return;
-    const bool inverted = (report_.pose.rotation * Vector3d::UnitY()).y() < 0;
-    flip_ = inverted ? Flip::half_turn : Flip::normal;
-    if (inverted) compute(level);
+    if (flip_ == Flip::unknown) {
+      const bool inverted = (report_.pose.rotation * Vector3d::UnitY()).y() < 0;
+      flip_ = inverted ? Flip::half_turn : Flip::normal;
+      if (inverted) compute(level);
+    }
+    // Upstream would send it: coincident points are infinitely far away. No program can use that to compare anything.
+    if (report_.pose.position.allFinite() && report_.pose.rotation.coeffs().allFinite()) return;
+    report_ = before;
+    report_.valid = false;
   }
 
   void compute(bool level) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 
 #include "engine/base/error.hpp"
@@ -120,6 +121,21 @@ TEST(VirtualRemote, ReportsAtMostFourLights) {
   EXPECT_GT(c[13], 0);
 }
 
+// Two rows of ten: the first four have the slots until one of them leaves the image.
+TEST(VirtualRemote, ImagesAnyNumberOfPointsFourAtATime) {
+  RemoteSettings settings;
+  settings.slot_rule = SlotRule::first_free;
+  settings.leds.clear();
+  for (int i = 0; i < 20; ++i) settings.leds.push_back(Led{{0.02 * (i % 10) - 0.09, 0.05 * (i / 10), 0}});
+  settings.pixel_noise = 0.3;
+  VirtualRemote remote(settings, 1, "remote");
+  EXPECT_EQ(remote.sense(0, head_at({0, 0, 1})).led_in_view, 0b1111U);
+  // u = 1023 is 0.39 m to the side: LED 3 at x = 0.42 is out, LED 0 at 0.36 in.
+  const SensedReport aside = remote.sense(1, head_at({0.45, 0, 1}));
+  EXPECT_EQ(std::popcount(aside.led_in_view), 4);
+  EXPECT_EQ(aside.led_in_view & 0b1111U, 0b0011U);
+}
+
 TEST(VirtualRemote, LosesAnLedBehindTheHeadThatWearsIt) {
   RemoteSettings settings;
   settings.balls = {{.centre = {0, 0, 0.1}, .radius = 0.1, .on_head = true}};
@@ -218,6 +234,8 @@ TEST(VirtualRemote, RefusesSettingsOutsideTheirRange) {
   settings = {};
   settings.leds.clear();
   EXPECT_THROW(VirtualRemote(settings, 1, "r"), Error);
+  settings.leds.resize(5);
+  EXPECT_THROW(VirtualRemote(settings, 1, "r"), Error) << "five LEDs, four slots of their own";
 }
 
 }  // namespace
