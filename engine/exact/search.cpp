@@ -212,7 +212,9 @@ Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& place
 bool Search::decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) const {
   double a = mine.distance;
   double b = other.distance;
-  if (a >= 0 && b >= 0) {  // free: the one that will be passed last
+  // Free: the one that will be passed last. A place that just touches one of them is free, too: it slides along that
+  // one and does not stumble over the other.
+  if (std::max(a, b) >= 0 && std::min(a, b) > -kTouching) {
     const Vector3d way = moved(p);
     a += mine.normal.dot(way);
     b += other.normal.dot(way);

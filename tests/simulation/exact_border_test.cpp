@@ -1,0 +1,99 @@
+// Where precise knowledge ends: half of a plate's top is a plane, the other half a surface that is known by its voxels
+// only. A box that a hand slides across the border must not feel more than voxels let it feel anyway.
+#include <gtest/gtest.h>
+
+#include "tests/simulation/hybrid_scenes.hpp"
+
+namespace verisim {
+namespace {
+
+constexpr double kThick = 0.02, kVoxel = 0.002;
+constexpr std::size_t kBox = 1;
+
+std::shared_ptr<const Solid> box_at(double x, double z, std::vector<double> sizes) {
+  return std::make_shared<Solid>(Solid{.kind = Solid::Kind::placed,
+                                       .sizes = {},
+                                       .children = {scenes::solid(Solid::Kind::box, std::move(sizes))},
+                                       .placement = {{x, 0, z}, Quaterniond::Identity()}});
+}
+
+/// Its top is two faces at one height, with a groove of half a millimetre between them.
+Solid plate() {
+  return scenes::difference(box_at(0, 0, {0.32, 0.12, kThick}), box_at(0, 0.5 * kThick, {0.0005, 0.2, 0.01}));
+}
+
+/// `unknown`: the top on the side of growing x has no surface.
+Scene sliding_box(Hybrid hybrid, bool unknown) {
+  Scene scene;
+  scene.parameters.hybrid = hybrid;
+  scene.parameters.integrator = Integrator::implicit;
+  scene.bodies.push_back(scenes::body_of("plate", plate(), kVoxel));
+  scene.bodies.push_back(scenes::body_of("box", *scenes::solid(Solid::Kind::box, {0.05, 0.05, 0.04}), kVoxel));
+  scene.bodies[0].fixed = true;
+  scene.bodies[kBox].density = 500;
+  scene.bodies[kBox].X_WB.position = {-0.09, 0, 0.5 * kThick + 0.021};
+  Part& part = scene.bodies[0].parts.front();
+  int tops = 0;
+  for (std::size_t f = 0; f < part.faces.size(); ++f) {
+    const auto* plane = std::get_if<Plane>(&part.faces[f].surface);
+    if (plane == nullptr || plane->normal.z() < 0.5 || plane->point.z() < 0.4 * kThick) continue;
+    ++tops;
+    double x = 0;
+    for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t)
+      if (part.mesh.face_of_triangle[t] == f) x += part.mesh.vertices[part.mesh.triangles[t][0]].x();
+    if (unknown && x > 0) part.faces[f].surface = OtherSurface{};
+  }
+  EXPECT_EQ(tops, 2) << "the plate's top is to be two faces";
+  const double pressed = 0.5 * kThick + 0.018;
+  scene.devices = {
+      scenes::hand_along({{-0.09, 0, 0.5 * kThick + 0.021}, {-0.09, 0, pressed}, {0.09, 0, pressed}}, 0.1)};
+  scene.grasps = {{0, kBox}};
+  return scene;
+}
+
+struct Slide {
+  double step_max = 0;    ///< N, change of the contact force from frame to frame
+  double height_max = 0;  ///< m, of the box above the plate, either way
+};
+
+/// What happens once the box lies on the plate, while its middle is between `from` and `to` [m].
+Slide slide(Hybrid hybrid, bool unknown, double from, double to) {
+  Simulation simulation(sliding_box(hybrid, unknown), {});
+  Slide result;
+  Vector3d before = Vector3d::Zero();
+  while (simulation.frame() < simulation.frames_planned()) {
+    simulation.step();
+    const Vector3d force = simulation.body_force(kBox).force;
+    const Vector3d p = simulation.body_pose(kBox).position;
+    if (simulation.time() > 0.2 && p.x() > from && p.x() < to) {
+      result.step_max = std::max(result.step_max, (force - before).norm());
+      result.height_max = std::max(result.height_max, std::abs(p.z() - 0.5 * kThick - 0.02));
+    }
+    before = force;
+  }
+  return result;
+}
+
+// The box's lower edge lies in the plate's plane, but for what 0.3 N press it in: far less than a nanometre. It must
+// not stumble over the far side of the groove because of that.
+TEST(Groove, IsCrossedByWhatSlidesFlatOverIt) {
+  const Slide known = slide(Hybrid::exact, false, -0.1, 0.1);
+  EXPECT_LE(known.height_max, 1e-9);
+  EXPECT_LE(known.step_max, 0.3);
+}
+
+// Up to the border the precise answer stands as if all were known: quiet, where voxels rattle. Beyond it is the voxels'
+// and no worse than theirs; and the way from one to the other is not worse than that either.
+TEST(Border, OfWhatIsKnownIsCrossedWithoutAJump) {
+  constexpr double kBefore = -0.026;  // the box's front is a millimetre before the groove
+  const Slide before = slide(Hybrid::exact, true, -0.1, kBefore);
+  EXPECT_LE(before.height_max, 1e-9);
+  EXPECT_LE(before.step_max, 1e-4);
+  const Slide voxels = slide(Hybrid::off, true, -0.1, 0.1);
+  const Slide across = slide(Hybrid::exact, true, kBefore, 0.03);
+  EXPECT_LE(across.height_max, 1.1 * voxels.height_max);
+  EXPECT_LE(across.step_max, 1.1 * voxels.step_max);
+}
+
+}  // namespace
+}  // namespace verisim
