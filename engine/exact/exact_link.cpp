@@ -7,8 +7,8 @@
 namespace verisim::exact {
 namespace {
 
-Vector3d velocity_at(const BodyMotion& body, const Vector3d& p_W) {
-  return body.twist.linear + body.twist.angular.cross(p_W - body.p_WC);
+Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d& p_W) {
+  return twist.linear + twist.angular.cross(p_W - body.p_WC);
 }
 
 SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, bool mover_is_second) {
@@ -17,8 +17,13 @@ SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt,
   f.R = X_BM.rotation.toRotationMatrix();
   f.p = X_BM.position;
   const Quaterniond to_base = base.X_WB.rotation.conjugate();
-  f.v = to_base * (velocity_at(mover, base.X_WB.position) - velocity_at(base, base.X_WB.position));
-  f.omega = to_base * (mover.twist.angular - base.twist.angular);
+  const Vector3d& origin = base.X_WB.position;
+  const auto against = [&](const Twist& of_mover, const Twist& of_base) {
+    return Twist{to_base * (velocity_at(mover, of_mover, origin) - velocity_at(base, of_base, origin)),
+                 to_base * (of_mover.angular - of_base.angular)};
+  };
+  f.twist = against(mover.twist, base.twist);
+  f.before = against(mover.before, base.before);
   f.R_WB = base.X_WB.rotation.toRotationMatrix();
   f.p_WB = base.X_WB.position;
   f.dt = dt;
@@ -29,7 +34,7 @@ SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt,
 
 bool is_finite(const BodyMotion& body) {
   return std::isfinite(body.X_WB.position.sum() + body.X_WB.rotation.coeffs().sum() + body.twist.linear.sum() +
-                       body.twist.angular.sum());
+                       body.twist.angular.sum() + body.before.linear.sum() + body.before.angular.sum());
 }
 
 }  // namespace

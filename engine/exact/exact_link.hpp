@@ -8,7 +8,8 @@
 //     other, the row is that of edge against edge, with the normal across both. At a concave edge either face has its
 //     row, so the smaller distance decides;
 //   - before anything touches, the face that would be passed last within the step decides, so that a pin that enters a
-//     hole beside its rim does not stumble over the plane around it;
+//     hole beside its rim does not stumble over the plane around it; where it lies on one of them and slides, its last
+//     velocity says which that is;
 //   - a place that cannot be the nearest because the faces there look the wrong way counts less and less, and not at
 //     all from 40 degrees on.
 // Every row appears with a gap of the margin or more and so without force.
@@ -26,6 +27,7 @@ struct BodyMotion {
   Pose X_WB;
   Vector3d p_WC = Vector3d::Zero();  ///< centre of mass [m]
   Twist twist;                       ///< of the centre of mass
+  Twist before = {};                 ///< in the last step, with the contacts that it had
 };
 
 /// Work of one search; deterministic.

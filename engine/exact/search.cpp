@@ -15,6 +15,7 @@ constexpr double kOwnFree = 1e-7;  // m
 constexpr double kOwnNone = 1e-6;
 // A segment that slopes towards the surface touches with a part of its length only.
 constexpr double kTouching = 1e-6;  // m: what is as near as this counts as touching
+constexpr double kFlush = 1e-7;     // m: what lies in a face's plane overlaps it by less
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A feature in the coordinates of the base.
@@ -86,10 +87,12 @@ class Search {
   void meet_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                   std::span<double> ahead, std::uint32_t face);
   [[nodiscard]] CurveFromSurface seen_from(const PreciseSurface& surface, const PlacedFeature& placed) const {
-    return exact::seen_from(surface, placed.origin, placed.x, placed.y, placed.is_arc(), f_.dt * f_.v,
-                            f_.dt * f_.omega);
+    return exact::seen_from(surface, placed.origin, placed.x, placed.y, placed.is_arc(), f_.dt * f_.twist.linear,
+                            f_.dt * f_.twist.angular);
   }
-  [[nodiscard]] Vector3d moved(const Vector3d& p) const { return f_.dt * (f_.v + f_.omega.cross(p)); }
+  [[nodiscard]] Vector3d moved(const Vector3d& p, const Twist& twist) const {
+    return f_.dt * (twist.linear + twist.angular.cross(p));
+  }
   [[nodiscard]] Place slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const;
   [[nodiscard]] bool admit(const PlacedFeature& placed, std::uint32_t face, Candidate& c) const;
   [[nodiscard]] bool cross_edge(const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
@@ -186,7 +189,7 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
     if (c.gap >= f_.margin || c.gap < -base_.options.spacing) continue;
     c.normal = c.at.normal;
     if (!admit(placed, face, c) || c.gap >= f_.margin) continue;
-    c.gap_ahead = c.gap + c.normal.dot(moved(c.p));
+    c.gap_ahead = c.gap + c.normal.dot(moved(c.p, f_.twist));
     if (c.gap_ahead < best.gap_ahead) best = c;
   }
   if (best.gap_ahead == kNever) return;
@@ -212,10 +215,11 @@ Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& place
 bool Search::decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) const {
   double a = mine.distance;
   double b = other.distance;
-  // Free: the one that will be passed last. A place that just touches one of them is free, too: it slides along that
-  // one and does not stumble over the other.
-  if (std::max(a, b) >= 0 && std::min(a, b) > -kTouching) {
-    const Vector3d way = moved(p);
+  // Free: the one that will be passed last. A place that lies on one of them slides along that one and does not stumble
+  // over the other; what it would do without contact says nothing there.
+  const bool is_free = a >= 0 && b >= 0;
+  if (is_free || (std::max(a, b) >= 0 && std::min(a, b) > -kFlush)) {
+    const Vector3d way = moved(p, is_free ? f_.twist : f_.before);
     a += mine.normal.dot(way);
     b += other.normal.dot(way);
   }

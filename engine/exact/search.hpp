@@ -8,11 +8,12 @@ namespace verisim::exact {
 
 /// The mover's place and motion as the base sees them.
 struct SearchFrame {
-  Matrix3d R;         ///< mover's coordinates to the base's
-  Vector3d p;         ///< m, mover's origin
-  Vector3d v, omega;  ///< velocity of the mover's material against the base: v + omega x point
-  Matrix3d R_WB;      ///< base to world
-  Vector3d p_WB;      ///< m
+  Matrix3d R;     ///< mover's coordinates to the base's
+  Vector3d p;     ///< m, mover's origin
+  Twist twist;    ///< of the mover's material against the base, at the base's origin, without contact
+  Twist before;   ///< likewise, in the last step
+  Matrix3d R_WB;  ///< base to world
+  Vector3d p_WB;  ///< m
   double dt, margin;
   bool mover_is_second;
 };

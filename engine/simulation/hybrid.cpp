@@ -155,8 +155,10 @@ void Simulation::Implementation::solve_exactly() {
 
 void Simulation::Implementation::find_exact_contacts(Link& link) {
   const auto motion_of = [&](const Body& body) {
-    exact::BodyMotion motion{body.rigid.pose(), body.rigid.p_WC, {}};
-    if (body.solved) motion.twist = {body.velocity.head<3>(), body.velocity.tail<3>()};
+    exact::BodyMotion motion{.X_WB = body.rigid.pose(), .p_WC = body.rigid.p_WC, .twist = {}};
+    if (!body.solved) return motion;
+    motion.twist = {body.velocity.head<3>(), body.velocity.tail<3>()};
+    motion.before = {body.rigid.v_C, body.rigid.omega};
     return motion;
   };
   double closing = 0;

@@ -80,7 +80,7 @@ struct HeldPin {
   /// Everything that `exact` costs in a frame: search and solution.
   void contact(const Matrix6d& M, const Vector6d& u0) {
     const BodyMotion block_motion;
-    const BodyMotion pin_motion{X_WB, X_WB.position, {u0.head<3>(), u0.tail<3>()}};
+    const BodyMotion pin_motion{X_WB, X_WB.position, {u0.head<3>(), u0.tail<3>()}, {v, omega}};
     link.find(block_motion, pin_motion, dt, margin + dt * speed);
     solver.clear();
     const int body = solver.add_body(X_WB.position, M, u0, last);
