@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/lanes.hpp"
+
 namespace verisim {
 namespace {
 
@@ -24,12 +26,57 @@ struct Run {
   std::uint32_t begin, end;
 };
 
+/// Vectors of two contacts, component by component.
+struct Two {
+  Double2 x, y, z;
+};
+Double2 dot(const Two& a, const Two& b) {
+  return a.x * b.x + (a.y * b.y + a.z * b.z);  // as Eigen sums three
+}
+Two both(const Vector3d& v) {
+  return {Double2{v.x(), v.x()}, Double2{v.y(), v.y()}, Double2{v.z(), v.z()}};
+}
+
+/// normal_at() of two contacts. Only for fields that need no square root.
+template <NormalField field>
+Two normals_at(const ActiveConstraint& c, const Two& p) {
+  if constexpr (field == NormalField::constant) return both(c.direction);
+  const Two point = both(c.point);
+  const Two q = {p.x - point.x, p.y - point.y, p.z - point.z};
+  if constexpr (field == NormalField::about_point) return q;
+  const Two v = both(c.direction);
+  const Double2 height = dot(v, q);
+  return {q.x - height * v.x, q.y - height * v.y, q.z - height * v.z};
+}
+
+/// restore() of contacts i and i + 1.
+template <NormalField field, bool pushes_only>
+void restore_two(const ContactColumns& c, std::uint32_t i, const ActiveConstraint& active) {
+  const Two n = normals_at<field>(active, {load2(c.x + i), load2(c.y + i), load2(c.z + i)});
+  const Two f = {load2(c.fx + i), load2(c.fy + i), load2(c.fz + i)};
+  const Double2 zero = {0, 0};
+  const Double2 one = {1, 1};
+  const Double2 n_squared = dot(n, n);
+  const Double2 f_along = dot(f, n);
+  const auto has_none = n_squared == zero;
+  Double2 part = active.alpha * (f_along / (has_none ? one : n_squared));
+  const Double2 kept = has_none ? one : one - active.alpha;
+  if constexpr (pushes_only) part = f_along >= zero ? zero : part;
+  store2(kept * f.x + part * n.x, c.fx + i);
+  store2(kept * f.y + part * n.y, c.fy + i);
+  store2(kept * f.z + part * n.z, c.fz + i);
+}
+
 /// restore() of restoration.hpp over a run of contacts, for one kind of field: nothing is decided inside the loop.
 template <NormalField field, bool pushes_only>
 void restore_run(const ContactColumns& c, Run run, ActiveConstraint active) {
   active.field = field;
   active.point -= c.origin;
-  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+  std::uint32_t i = run.begin;
+  if constexpr (field != NormalField::about_cone && field != NormalField::about_ring) {
+    for (; i + 1 < run.end; i += 2) restore_two<field, pushes_only>(c, i, active);
+  }
+  for (; i < run.end; ++i) {
     const Vector3d n = normal_at(active, Vector3d(c.x[i], c.y[i], c.z[i]));
     set_force(c, i, restore_along(n, force_of(c, i), active.alpha, pushes_only));
   }

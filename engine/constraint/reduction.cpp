@@ -10,6 +10,7 @@ namespace {
 constexpr double kSameLine = 1e-6;    ///< m, and rad: files round to 1e-7
 constexpr double kSquareLow = 3e-4;   ///< sin^2 of 1 degree: normals closer than this are one
 constexpr double kSquareHigh = 3e-2;  ///< sin^2 of 10 degrees: normals farther apart than this are two
+constexpr double kPerSquare = 1 / (kSquareHigh - kSquareLow);
 
 bool same_line(const ConstraintSide& a, const ConstraintSide& b) {
   return a.direction.cross(b.direction).squaredNorm() < kSameLine * kSameLine &&
@@ -20,18 +21,19 @@ bool is_convex(const ConstraintSide& plane, const ConstraintSide& round) {
   return (round.point - plane.point).dot(plane.direction) < 0;
 }
 
-/// One normal at one contact, prepared.
+/// One normal at one contact. Of any length: nothing below needs a root.
 struct Held {
-  Vector3d n;  ///< unit
+  Vector3d n;
+  double n_squared;
   double alpha;
   bool pushes_only;
 };
 
-/// What is held along the way through the subsets: unit normals, each square to those before, and how much of each
-/// counts: 0 where it only repeats another.
+/// What is held along the way through the subsets: normals, each square to those before, and how much of each counts
+/// (0 where it only repeats another) over its square.
 struct Basis {
   std::array<Vector3d, kHoldingMax> m;
-  std::array<double, kHoldingMax> own;
+  std::array<double, kHoldingMax> scale;
 };
 
 /// Sum over all subsets of held[i], held[i + 1] … of weight x what is left of f when the span of the subset, and of the
@@ -47,17 +49,15 @@ inline Vector3d free_part(const std::array<Held, count>& held, Basis& basis, con
     Vector3d total = Vector3d::Zero();
     if (h.alpha < 1) total = free_part<i + 1, size>(held, basis, rest, weight * (1 - h.alpha));
     Vector3d m = h.n;
-    for (std::size_t k = 0; k < size; ++k) m -= basis.own[k] * m.dot(basis.m[k]) * basis.m[k];
-    const double square = m.squaredNorm();  // sin^2 of the angle between n and what is held already
-    const double own = std::clamp((square - kSquareLow) / (kSquareHigh - kSquareLow), 0.0, 1.0);
-    Vector3d left = rest;
-    if (own > 0) {
-      m /= std::sqrt(square);
-      const double along = rest.dot(m);
-      if (!h.pushes_only || along < 0) left -= own * along * m;
-    }
+    for (std::size_t k = 0; k < size; ++k) m -= basis.scale[k] * m.dot(basis.m[k]) * basis.m[k];
+    const double square = m.squaredNorm();
+    const double share = square / h.n_squared;  // sin^2 of the angle between n and what is held already
+    const double own = std::clamp((share - kSquareLow) * kPerSquare, 0.0, 1.0);
     basis.m[size] = m;
-    basis.own[size] = own;
+    basis.scale[size] = own > 0 ? own / square : 0;
+    Vector3d left = rest;
+    const double along = rest.dot(m);
+    if (!h.pushes_only || along < 0) left -= basis.scale[size] * along * m;
     return total + free_part<i + 1, size + 1>(held, basis, left, weight * h.alpha);
   }
 }
@@ -67,7 +67,7 @@ bool hold(const ActiveConstraint& c, double alpha, const Vector3d& x, Held& held
   const Vector3d n = normal_at(c, x);
   const double square = n.squaredNorm();
   if (square == 0) return false;
-  held = {c.field == NormalField::constant ? n : Vector3d(n / std::sqrt(square)), alpha, c.pushes_only};
+  held = {n, square, alpha, c.pushes_only};
   return true;
 }
 

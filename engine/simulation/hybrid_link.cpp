@@ -1,7 +1,6 @@
 #include "engine/simulation/hybrid_link.hpp"
 
-#include <algorithm>
-
+#include "engine/base/lanes.hpp"
 #include "engine/voxel/association.hpp"
 
 namespace verisim {
@@ -30,7 +29,7 @@ HybridLink::HybridLink(const Side& map, const Side& points, const ConstraintOpti
   const std::size_t capacity = points.voxels->shell.size();
   set_a_.resize(capacity);
   set_b_.resize(capacity);
-  size_.resize(capacity);
+  size_.resize(capacity + ContactList::kPadding);
 }
 
 ContactColumns HybridLink::columns_of(const ContactList& contacts) {
@@ -61,21 +60,28 @@ RestoreResult HybridLink::restore(ContactList& contacts, const Pose& X_AB, bool 
   return result;
 }
 
-/// Sizes of forces that still lie along their contacts' normals.
-void HybridLink::keep_sizes(const ContactList& contacts) {
-  for (std::uint32_t i = 0; i < contacts.size; ++i) {
-    size_[i] = contacts.fx[i] * contacts.nx[i] + contacts.fy[i] * contacts.ny[i] + contacts.fz[i] * contacts.nz[i];
+/// Sizes of forces that still lie along their contacts' normals. Columns are padded: whole vectors may be read.
+void HybridLink::keep_sizes(const ContactList& c) {
+  for (std::uint32_t i = 0; i < c.size; i += 4) {
+    const Float4 size =
+        load4(&c.fx[i]) * load4(&c.nx[i]) + load4(&c.fy[i]) * load4(&c.ny[i]) + load4(&c.fz[i]) * load4(&c.nz[i]);
+    store4(size, &size_[i]);
   }
 }
 
-void HybridLink::turn(ContactList& contacts) const {
-  for (std::uint32_t i = 0; i < contacts.size; ++i) {
-    if (!(size_[i] > 0)) continue;
-    const float scale = 1 / size_[i];
-    contacts.nx[i] = scale * contacts.fx[i];
-    contacts.ny[i] = scale * contacts.fy[i];
-    contacts.nz[i] = scale * contacts.fz[i];
-  }
+void HybridLink::turn(ContactList& c) const {
+  const Float4 zero = {0, 0, 0, 0};
+  const Float4 one = {1, 1, 1, 1};
+  const auto turn_column = [&](const std::vector<float>& f, std::vector<float>& n) {
+    for (std::uint32_t i = 0; i < c.size; i += 4) {
+      const Float4 size = load4(&size_[i]);
+      const auto pushes = size > zero;
+      store4(pushes ? load4(&f[i]) / (pushes ? size : one) : load4(&n[i]), &n[i]);
+    }
+  };
+  turn_column(c.fx, c.nx);
+  turn_column(c.fy, c.ny);
+  turn_column(c.fz, c.nz);
 }
 
 RestoreResult HybridLink::look_up(const ContactList& contacts, const Pose& X_AB) {

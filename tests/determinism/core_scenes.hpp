@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/simulation/declaring.hpp"
 #include "tests/simulation/scenes.hpp"
 
 namespace verisim::determinism {
@@ -15,6 +16,37 @@ struct CoreScene {
   std::function<Scene()> make;
 };
 
+/// Gives every surface voxel those of the surfaces that pass within a voxel of its centre: a b-rep without a CAD
+/// kernel.
+inline void declare(BodyDescription& body, double radius, const std::vector<Plane>& planes) {
+  const Declaring declaring(body);
+  Face side;
+  side.surface = Cylinder{Vector3d::Zero(), Vector3d::UnitZ(), Vector3d::UnitX(), radius, false};
+  for (std::uint32_t voxel = 0; voxel < declaring.surface_voxels(); ++voxel) {
+    const Vector3d p = declaring.center(voxel);
+    std::vector<DeclaredFeatures::Entity> set;
+    if (std::abs(p.head<2>().norm() - radius) <= body.voxel_size) set.emplace_back(side);
+    for (const Plane& plane : planes) {
+      if (std::abs((p - plane.point).dot(plane.normal)) > body.voxel_size) continue;
+      Face end;
+      end.surface = plane;
+      set.emplace_back(end);
+    }
+    declaring.give(body, p, set);
+  }
+}
+
+inline Scene hybrid_pin(Hybrid hybrid, Integrator integrator, AlignmentMeasure alignment) {
+  const auto end_at = [](double z, double up) { return Plane{{0, 0, z}, up * Vector3d::UnitZ(), Vector3d::UnitX()}; };
+  Scene scene = scenes::pin_in_hole();
+  scene.parameters.hybrid = hybrid;
+  scene.parameters.integrator = integrator;
+  scene.parameters.alignment = alignment;
+  declare(scene.bodies[0], 0.075, {end_at(0.05, 1), end_at(-0.05, -1)});
+  declare(scene.bodies[1], 0.070, {end_at(0.2, 1), end_at(0, -1)});
+  return scene;
+}
+
 inline std::vector<CoreScene> core_scenes() {
   const auto pin = [](Integrator integrator) {
     Scene scene = scenes::pin_in_hole();
@@ -23,13 +55,18 @@ inline std::vector<CoreScene> core_scenes() {
   };
   return {{"pin_in_hole", [=] { return pin(Integrator::semi_implicit); }},
           {"pin_in_hole_implicit", [=] { return pin(Integrator::implicit); }},
+          {"pin_restored",
+           [] { return hybrid_pin(Hybrid::restore, Integrator::semi_implicit, AlignmentMeasure::by_type); }},
+          {"pin_restored_implicit",
+           [] { return hybrid_pin(Hybrid::restore, Integrator::implicit, AlignmentMeasure::pavlik); }},
+          {"pin_blended", [] { return hybrid_pin(Hybrid::blend, Integrator::semi_implicit, AlignmentMeasure::faas); }},
           {"falling_boxes", [] { return scenes::falling_boxes(3, Integrator::semi_implicit); }},
           {"falling_boxes_implicit", [] { return scenes::falling_boxes(3, Integrator::implicit); }}};
 }
 
 /// What a run of a scene came to: every bit of its state is in the hash; the counts show that it reached the code.
 struct CoreResult {
-  std::uint64_t hash = 0, contacts = 0, points_tested = 0, collision_frames = 0;
+  std::uint64_t hash = 0, contacts = 0, points_tested = 0, collision_frames = 0, constrained_frames = 0;
   bool operator==(const CoreResult&) const = default;
 };
 
@@ -44,6 +81,9 @@ inline CoreResult run_core(const CoreScene& scene, unsigned threads) {
   }
   result.hash = simulation.state_hash();
   result.collision_frames = simulation.collision_frames();
+  const Simulation::Totals& totals = simulation.totals();
+  for (std::size_t kind = 1; kind < totals.constraint_frames.size(); ++kind)
+    result.constrained_frames += totals.constraint_frames[kind];
   return result;
 }
 

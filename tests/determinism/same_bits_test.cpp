@@ -34,11 +34,15 @@ TEST(SameBits, OnEverySimdTargetAndNumberOfThreads) {
 struct Golden {
   const char* hash;
   std::uint64_t collision_frames;  ///< a physical fact beside the bits: it survives harmless changes
+  std::uint64_t constrained_frames = 0;
 };
 
 const std::map<std::string, Golden> kGolden = {
     {"pin_in_hole", {"cc7f2514b8a857b4", 735}},
     {"pin_in_hole_implicit", {"e622b28d5f9478de", 729}},
+    {"pin_restored", {"31e106df38a13804", 737, 737}},
+    {"pin_restored_implicit", {"10e431f9559f2c32", 733, 733}},
+    {"pin_blended", {"7e598a0b8cef1c1b", 1052, 1052}},
     {"falling_boxes", {"89e96cf0cda6ee07", 440}},
     {"falling_boxes_implicit", {"a6d2ed6fed2b64b8", 440}},
 };
@@ -48,6 +52,7 @@ TEST(SameBits, AsWhenTheGoldenHashesWereWritten) {
     const CoreResult result = run_core(scene, 1);
     EXPECT_EQ(to_hex(result.hash), kGolden.at(scene.name).hash) << scene.name;
     EXPECT_EQ(result.collision_frames, kGolden.at(scene.name).collision_frames) << scene.name;
+    EXPECT_EQ(result.constrained_frames, kGolden.at(scene.name).constrained_frames) << scene.name;
   }
 }
 

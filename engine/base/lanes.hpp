@@ -1,0 +1,31 @@
+// Two doubles or four floats computed at once, with the compiler's own vectors: operators act on each lane by itself
+// and round as one number does, so the bits are those of a plain loop. For short loops outside the contact query.
+#pragma once
+
+#include <cstring>
+
+namespace verisim {
+
+using Float4 [[gnu::vector_size(16)]] = float;
+using Double2 [[gnu::vector_size(16)]] = double;
+
+/// Four neighbours of a column. p need not be aligned.
+[[nodiscard]] inline Float4 load4(const float* p) {
+  Float4 lanes;
+  std::memcpy(&lanes, p, sizeof lanes);
+  return lanes;
+}
+inline void store4(Float4 lanes, float* p) {
+  std::memcpy(p, &lanes, sizeof lanes);
+}
+
+/// Two neighbours of a column of floats, as doubles; and back, rounded.
+[[nodiscard]] inline Double2 load2(const float* p) {
+  return Double2{double{p[0]}, double{p[1]}};
+}
+inline void store2(Double2 lanes, float* p) {
+  p[0] = static_cast<float>(lanes[0]);
+  p[1] = static_cast<float>(lanes[1]);
+}
+
+}  // namespace verisim
