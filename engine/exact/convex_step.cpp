@@ -62,10 +62,15 @@ int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d
 
 void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second) {
   VERISIM_ASSERT(first != second);
-  const auto rate = [&](const ContactRow& row, int body, double sign) {
-    Vector6d J;
-    J << sign * row.normal, sign * (row.point - bodies_[at(body)].p_WC).cross(row.normal);
-    return J;
+  const auto rate = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
+    const Vector3d n = sign * row.normal;
+    const Vector3d arm = row.point - bodies_[at(body)].p_WC;
+    J[0] = n.x();
+    J[1] = n.y();
+    J[2] = n.z();
+    J[3] = arm.y() * n.z() - arm.z() * n.y();
+    J[4] = arm.z() * n.x() - arm.x() * n.z();
+    J[5] = arm.x() * n.y() - arm.y() * n.x();
   };
   for (const ContactRow& from : rows) {
     if (rows_.size() == rows_.capacity()) {
@@ -76,8 +81,8 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     row.g = from.gap;
     row.k = from.stiffness;
     row.body = {second, first};
-    if (second != kFixed) row.J[0] = rate(from, second, 1);
-    if (first != kFixed) row.J[1] = rate(from, first, -1);
+    if (second != kFixed) rate(from, second, 1, row.J[0]);
+    if (first != kFixed) rate(from, first, -1, row.J[1]);
     if (second != kFixed) continue;
     std::swap(row.body[0], row.body[1]);
     std::swap(row.J[0], row.J[1]);

@@ -60,7 +60,7 @@ void for_each_place(std::array<Vector3d, 3> corner, double step, Visit&& visit) 
 }  // namespace
 
 int Trim::Axis::index(double x) const {
-  const double i = std::floor((x - from) / cell);
+  const double i = (x - from) * per_cell;
   if (around) return std::clamp(static_cast<int>(i), 0, count - 1);
   return i >= 0 && i < count ? static_cast<int>(i) : -1;
 }
@@ -105,6 +105,7 @@ Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<co
     axis.cell = std::max(extent / inner, cell / metres * 0x1p-10);
     axis.count = around ? inner : inner + 2;  // a cell more on either side: near the border, but beyond it
     axis.from = around ? 0 : from - axis.cell;
+    axis.per_cell = 1 / axis.cell;
     return axis;
   };
   a_ = make_axis(layout.a_around, layout.a_metres, low[0], high[0]);

@@ -35,7 +35,7 @@ class Trim {
 
  private:
   struct Axis {
-    double from = 0, cell = 1;
+    double from = 0, cell = 1, per_cell = 1;
     int count = 1;
     bool around = false;  ///< the last cell's neighbour is the first
     [[nodiscard]] int index(double x) const;
