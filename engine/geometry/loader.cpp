@@ -10,6 +10,7 @@
 #include "engine/base/error.hpp"
 #include "engine/geometry/cad_client.hpp"
 #include "engine/geometry/model_format.hpp"
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/write_file.hpp"
 
 namespace verisim {
@@ -195,6 +196,9 @@ std::vector<Part> load_model(const std::string& path, const std::string& content
   const Message answer = ask_cad({{"request", std::move(request)}}, path);
   std::vector<Part> parts = family == Family::mesh ? finished_meshes(answer, path) : parts_from(answer);
   make_names_unique(parts, std::filesystem::path(path).stem().string());
+  for (Part& part : parts) {
+    if (options.recover && !part.has_brep()) recover_brep(part);
+  }
   return parts;
 }
 

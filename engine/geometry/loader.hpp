@@ -21,6 +21,7 @@ struct LoadOptions {
                           ///< (mm for BREP). Given for STEP it multiplies the file's own.
   double deflection = 0;  ///< chord error of the tessellation [m]; 0: 1/2000 of the bounding box diagonal
   double angular_deflection = 0.1;  ///< rad
+  bool recover = false;             ///< faces and edges of mesh files from their triangles (recover.hpp)
 };
 
 /// One part per solid, in file order; of a mesh file one part, or one per named object if each of them is closed.

@@ -1,4 +1,4 @@
-// The only file that includes CGAL. Works on the triangles as they are instead of on CGAL's halfedge meshes, which can
+// Works on the triangles as they are instead of on CGAL's halfedge meshes, which can
 // hold no non-manifold edge; the predicates are exact, so the answer does not depend on the machine.
 #include "engine/geometry/self_intersection.hpp"
 

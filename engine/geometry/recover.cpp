@@ -1,0 +1,84 @@
+#include "engine/geometry/recover.hpp"
+
+#include <algorithm>
+
+#include "engine/base/error.hpp"
+#include "engine/geometry/recover/canonical_mesh.hpp"
+#include "engine/geometry/recover/region_edges.hpp"
+#include "engine/geometry/recover/region_faces.hpp"
+#include "engine/geometry/recover/region_search.hpp"
+
+namespace verisim {
+
+namespace {
+
+/// Of the mesh's extent: single precision, numbers of six digits, of five.
+constexpr std::array<double, 3> kUsualTolerances = {3e-7, 4e-6, 3e-5};
+
+double extent_of(const TriangleMesh& mesh) {
+  double farthest = bounds_of(mesh).size().norm();
+  for (const Vector3d& p : mesh.vertices) farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
+  return farthest;
+}
+
+/// How much it takes to say what a mesh is: a word for each surface, and one for each triangle that is on none.
+std::size_t effort(const std::vector<recover::Region>& regions) {
+  std::size_t words = regions.size();
+  for (const recover::Region& region : regions) {
+    if (std::holds_alternative<OtherSurface>(region.surface)) words += region.triangles.size();
+  }
+  return words;
+}
+
+struct Explanation {
+  std::vector<recover::Region> regions;
+  double tolerance = 0;
+};
+
+/// The explanation by the smallest tolerance, unless a larger one halves the effort: too small a tolerance breaks
+/// surfaces into pieces, too large a one finds some where there are none.
+Explanation explained(const recover::CanonicalMesh& mesh, double extent) {
+  Explanation best;
+  for (const double usual : kUsualTolerances) {
+    Explanation next{recover::find_regions(mesh, usual * extent), usual * extent};
+    if (best.tolerance == 0 || 2 * effort(next.regions) < effort(best.regions)) best = std::move(next);
+    if (effort(best.regions) == best.regions.size()) break;  // nothing is left to explain
+  }
+  return best;
+}
+
+std::string note_on(const Part& part) {
+  std::array<std::size_t, kSurfaceNames.size()> counts{};
+  for (const Face& face : part.faces) ++counts[face.surface.index()];
+  std::string found;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > 0) found += fmt::format("{}{} {}", found.empty() ? "" : ", ", counts[i], kSurfaceNames[i]);
+  }
+  return fmt::format("faces recovered from its triangles: {}", found);
+}
+
+}  // namespace
+
+void recover_brep(Part& part, const RecoverOptions& options) {
+  VERISIM_ASSERT(!part.has_brep());
+  if (part.mesh.triangles.empty()) return;
+  const recover::CanonicalMesh mesh = recover::canonical(part.mesh);
+  const auto [regions, tolerance] = options.tolerance > 0
+                                        ? Explanation{recover::find_regions(mesh, options.tolerance), options.tolerance}
+                                        : explained(mesh, extent_of(part.mesh));
+  std::vector<std::uint32_t> face_of(mesh.triangles.size(), kNoFace);
+  for (std::uint32_t r = 0; r < regions.size(); ++r) {
+    part.faces.push_back(recover::face_of(mesh, regions[r]));
+    for (const std::uint32_t t : regions[r].triangles) face_of[t] = r;
+  }
+  part.edges = recover::edges_between(mesh, regions, tolerance);
+  for (std::uint32_t e = 0; e < part.edges.size(); ++e) {
+    for (const std::uint32_t f : part.edges[e].faces) part.faces[f].edges.push_back(e);
+  }
+  part.mesh.face_of_triangle.clear();
+  for (const std::uint32_t t : mesh.of_given)
+    part.mesh.face_of_triangle.push_back(t == recover::kNone ? kNoFace : face_of[t]);
+  part.notes.push_back(note_on(part));
+}
+
+}  // namespace verisim

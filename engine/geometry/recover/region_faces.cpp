@@ -1,0 +1,180 @@
+#include "engine/geometry/recover/region_faces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/pinned_math.hpp"
+#include "engine/geometry/recover/surface_value.hpp"
+
+namespace verisim::recover {
+
+namespace {
+
+constexpr double kFullTurn = 2 * pinned::kPi;
+using Range = std::array<double, 2>;
+
+/// The vertices of a region, each once.
+std::vector<Vector3d> points_of(const CanonicalMesh& mesh, const Region& region) {
+  std::vector<std::uint32_t> vertices;
+  for (const std::uint32_t t : region.triangles) {
+    vertices.insert(vertices.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  }
+  std::ranges::sort(vertices);
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Vector3d> points;
+  for (const std::uint32_t v : vertices) points.push_back(mesh.vertices[v]);
+  return points;
+}
+
+template <typename Measure>
+Range range_of(const std::vector<Vector3d>& points, Measure measure) {
+  Range range = {measure(points[0]), measure(points[0])};
+  for (const Vector3d& p : points) {
+    range[0] = std::min(range[0], measure(p));
+    range[1] = std::max(range[1], measure(p));
+  }
+  return range;
+}
+
+/// Spans of angle that the triangles cover, each from a to b in the shorter direction, as one range: the complement of
+/// the widest gap; a whole turn where there is none.
+Range covered(std::vector<Range> spans) {
+  if (spans.empty()) return {0, kFullTurn};
+  std::ranges::sort(spans);
+  double reached = spans.front()[1], widest = 0, begin = spans.front()[0], end = reached;
+  for (const Range& span : spans) {
+    if (span[0] - reached > widest) {
+      widest = span[0] - reached;
+      begin = span[0] - kFullTurn;
+      end = reached;
+    }
+    reached = std::max(reached, span[1]);
+  }
+  const double last_gap = spans.front()[0] + kFullTurn - reached;
+  if (last_gap > widest) return {spans.front()[0], reached};
+  return widest > 0 ? Range{begin, end} : Range{spans.front()[0], spans.front()[0] + kFullTurn};
+}
+
+/// @param angle_at  angle of a vertex, none where it has no meaning
+template <typename AngleAt>
+Range turn_of(const CanonicalMesh& mesh, const Region& region, AngleAt angle_at) {
+  std::vector<Range> spans;
+  for (const std::uint32_t t : region.triangles) {
+    Range span = {0, 0};
+    bool first = true;
+    double from = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      double angle = 0;
+      if (!angle_at(mesh.corner(t, i), angle)) continue;
+      if (first) {
+        span = {angle, angle};
+        from = angle;
+        first = false;
+        continue;
+      }
+      while (angle - from > pinned::kPi) angle -= kFullTurn;
+      while (angle - from < -pinned::kPi) angle += kFullTurn;
+      span = {std::min(span[0], angle), std::max(span[1], angle)};
+    }
+    if (!first) spans.push_back(span);
+  }
+  // On both sides of the cut at +-pi, so that what crosses it is seen from either.
+  const std::size_t count = spans.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (spans[i][0] < -pinned::kPi) spans.push_back({spans[i][0] + kFullTurn, spans[i][1] + kFullTurn});
+    if (spans[i][1] > pinned::kPi) spans.push_back({spans[i][0] - kFullTurn, spans[i][1] - kFullTurn});
+  }
+  return covered(std::move(spans));
+}
+
+bool is_whole(const Range& turn) {
+  return turn[1] - turn[0] > kFullTurn - 1e-9;
+}
+
+/// Does a triangle of the region meet the ray from `origin` along `direction`?
+bool meets(const CanonicalMesh& mesh, const Region& region, const Vector3d& origin, const Vector3d& direction) {
+  return std::ranges::any_of(region.triangles, [&](std::uint32_t t) {
+    const Vector3d a = mesh.corner(t, 0) - origin, b = mesh.corner(t, 1) - origin, c = mesh.corner(t, 2) - origin;
+    const double u = direction.dot(a.cross(b)), v = direction.dot(b.cross(c)), w = direction.dot(c.cross(a));
+    const bool one_side = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    return one_side && direction.dot(a + b + c) > 0;
+  });
+}
+
+/// Sets u_range from the triangles, with the x axis where it begins unless it is a whole turn.
+template <typename Round>
+void set_around(Face& face, Round& round, const Vector3d& point, const CanonicalMesh& mesh, const Region& region) {
+  const Vector3d x = round.x_axis, y = round.direction.cross(x);
+  const double nothing = 1e-9 * mesh.size;
+  const Range turn = turn_of(mesh, region, [&](const Vector3d& p, double& angle) {
+    const Profile f = profile_of(p, point, round.direction);
+    angle = pinned::atan2(f.outward.dot(y), f.outward.dot(x));
+    return f.rho > nothing;
+  });
+  face.u_range = {0, kFullTurn};
+  if (is_whole(turn)) return;
+  round.x_axis = pinned::cos(turn[0]) * x + pinned::sin(turn[0]) * y;
+  face.u_range = {0, turn[1] - turn[0]};
+}
+
+class Bounds {
+ public:
+  Bounds(Face& face, const CanonicalMesh& mesh, const Region& region)
+      : face_(face), mesh_(mesh), region_(region), points_(points_of(mesh, region)) {}
+
+  void operator()(Plane& s) const {
+    const Vector3d y = s.normal.cross(s.x_axis);
+    face_.u_range = range_of(points_, [&](const Vector3d& p) { return (p - s.point).dot(s.x_axis); });
+    face_.v_range = range_of(points_, [&](const Vector3d& p) { return (p - s.point).dot(y); });
+  }
+  void operator()(Cylinder& s) const {
+    set_around(face_, s, s.point, mesh_, region_);
+    face_.v_range = heights(s.point, s.direction);
+  }
+  void operator()(Cone& s) const {
+    set_around(face_, s, s.point, mesh_, region_);
+    face_.v_range = heights(s.point, s.direction);
+  }
+  void operator()(Sphere& s) const {
+    set_around(face_, s, s.center, mesh_, region_);
+    face_.v_range = range_of(points_, [&](const Vector3d& p) {
+      const Profile f = profile_of(p, s.center, s.direction);
+      return pinned::atan2(f.height, f.rho);
+    });
+    if (meets(mesh_, region_, s.center, s.direction)) face_.v_range[1] = 0.25 * kFullTurn;
+    if (meets(mesh_, region_, s.center, -s.direction)) face_.v_range[0] = -0.25 * kFullTurn;
+  }
+  void operator()(Torus& s) const {
+    set_around(face_, s, s.center, mesh_, region_);
+    const Range turn = turn_of(mesh_, region_, [&](const Vector3d& p, double& angle) {
+      const Profile f = profile_of(p, s.center, s.direction);
+      angle = pinned::atan2(f.height, f.rho - s.major_radius);
+      return true;
+    });
+    face_.v_range = is_whole(turn) ? Range{0, kFullTurn} : turn;
+  }
+  void operator()(OtherSurface& /*s*/) const {}
+
+ private:
+  [[nodiscard]] Range heights(const Vector3d& point, const Vector3d& axis) const {
+    return range_of(points_, [&](const Vector3d& p) { return (p - point).dot(axis); });
+  }
+
+  Face& face_;
+  const CanonicalMesh& mesh_;
+  const Region& region_;
+  std::vector<Vector3d> points_;
+};
+
+}  // namespace
+
+Face face_of(const CanonicalMesh& mesh, const Region& region) {
+  Face face;
+  face.surface = region.surface;
+  for (const std::uint32_t t : region.triangles) face.area += mesh.areas[t];
+  const Bounds bounds(face, mesh, region);
+  std::visit(bounds, face.surface);
+  return face;
+}
+
+}  // namespace verisim::recover

@@ -1,0 +1,373 @@
+#include "engine/geometry/recover/region_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "engine/geometry/recover/evidence.hpp"
+#include "engine/geometry/recover/facets.hpp"
+#include "engine/geometry/recover/flat_regions.hpp"
+#include "engine/geometry/recover/surface_fit.hpp"
+
+namespace verisim::recover {
+
+namespace {
+
+constexpr Kind kRoundKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
+constexpr double kMostSagitta = 0.045;  // of the radius: the middle of a chord of 34 degrees
+constexpr double kAlongNormal = 0.9;    // cosine: a triangle's normal against the surface's at its middle
+constexpr double kLargerByFar = 1.001;  // in area, for a kind that is less simple
+constexpr int kGrowings = 8;
+constexpr std::array<std::size_t, 4> kAround = {2, 3, 6, 12};  // steps
+constexpr std::size_t kAgain = 3;                              // steps from what was taken
+constexpr int kSteps = 4;                                      // facets of a row to each side
+constexpr double kNarrower = 0.25;  // of a plane's width: a neighbour that curves away from it
+constexpr std::size_t kFewFacets = 4;
+constexpr double kMostlySharp = 0.6;  // of a border
+
+struct Candidate {
+  SurfaceValue surface;
+  std::vector<std::uint32_t> triangles;
+  double area = 0;
+};
+
+class Search {
+ public:
+  Search(const CanonicalMesh& mesh, double tolerance)
+      : mesh_(mesh),
+        tolerance_(tolerance),
+        facets_(facets_of(mesh, tolerance)),
+        taken_(mesh.triangles.size(), false),
+        taken_of_facet_(facets_.all.size(), 0),
+        untried_(facets_.all.size(), true),
+        met_(facets_.all.size(), false),
+        mark_(mesh.triangles.size(), 0) {}
+
+  std::vector<Region> run() {
+    bool found = true;
+    while (found) {
+      found = false;
+      for (std::uint32_t facet = 0; facet < facets_.all.size(); ++facet) {
+        if (untried_[facet] && is_free(facet)) found |= try_from(facet);
+      }
+    }
+    take_rest();
+    return std::move(regions_);
+  }
+
+ private:
+  [[nodiscard]] bool is_free(std::uint32_t facet) const { return taken_of_facet_[facet] == 0; }
+
+  /// Everything that is free and smoothly joined to a facet, up to `most` steps away. Ascending.
+  std::vector<std::uint32_t> around(std::uint32_t facet, std::size_t most) {
+    std::vector<std::uint32_t> found = {facet};
+    met_[facet] = true;
+    std::size_t begin = 0;
+    for (std::size_t step = 0; step < most && begin < found.size(); ++step) {
+      const std::size_t end = found.size();
+      for (; begin < end; ++begin) {
+        for (const FacetSide& side : facets_.all[found[begin]].sides) {
+          if (!side.smooth || met_[side.facet] || !is_free(side.facet)) continue;
+          met_[side.facet] = true;
+          found.push_back(side.facet);
+        }
+      }
+    }
+    for (const std::uint32_t f : found) met_[f] = false;
+    std::ranges::sort(found);
+    return found;
+  }
+
+  /// A row of facets: on through the side that is opposite to the one through which a facet was entered.
+  void walk(std::uint32_t facet, const FacetSide* through, std::vector<std::uint32_t>& row) const {
+    for (int step = 0; step < kSteps && through != nullptr; ++step) {
+      const std::uint32_t next = through->facet;
+      if (!through->smooth || !is_free(next) || std::ranges::find(row, next) != row.end()) return;
+      row.push_back(next);
+      const FacetSide* onward = nullptr;
+      double best = 0;
+      for (const FacetSide& side : facets_.all[next].sides) {
+        if (side.facet == facet || side.facet == kNone) continue;
+        const Vector3d way = side.middle - through->middle;
+        const double along = std::abs(side.direction.dot(through->direction)) *
+                             (way - way.dot(through->direction) * through->direction).norm();
+        if (along <= best) continue;
+        best = along;
+        onward = &side;
+      }
+      facet = next;
+      through = onward;
+    }
+  }
+
+  /// The rows through a facet: across its longest side, and across the one that is most at right angles to that.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> rows(std::uint32_t facet) const {
+    const std::vector<FacetSide>& sides = facets_.all[facet].sides;
+    const FacetSide* longest = nullptr;
+    for (const FacetSide& side : sides) {
+      if (side.smooth && (longest == nullptr || side.length > longest->length)) longest = &side;
+    }
+    std::vector<std::vector<std::uint32_t>> result;
+    if (longest == nullptr) return result;
+    for (const bool across : {false, true}) {
+      std::vector<std::uint32_t> row = {facet};
+      for (const FacetSide& side : sides) {
+        const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > 0.7;
+        if (side.smooth && is_parallel != across) walk(facet, &side, row);
+      }
+      std::ranges::sort(row);
+      row.erase(std::unique(row.begin(), row.end()), row.end());
+      result.push_back(std::move(row));
+    }
+    return result;
+  }
+
+  [[nodiscard]] Sample sample_of(const std::vector<std::uint32_t>& facets) const {
+    Sample sample;
+    std::vector<std::uint32_t> vertices;
+    for (const std::uint32_t f : facets) {
+      const Facet& facet = facets_.all[f];
+      sample.centers.push_back(facet.center);
+      sample.normals.push_back(facet.normal);
+      vertices.insert(vertices.end(), facet.vertices.begin(), facet.vertices.end());
+    }
+    sample.points = points_of(std::move(vertices));
+    return sample;
+  }
+
+  [[nodiscard]] std::vector<Vector3d> points_of(std::vector<std::uint32_t> vertices) const {
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<Vector3d> points;
+    points.reserve(vertices.size());
+    for (const std::uint32_t v : vertices) points.push_back(mesh_.vertices[v]);
+    return points;
+  }
+
+  [[nodiscard]] std::vector<Vector3d> points_of_triangles(const std::vector<std::uint32_t>& triangles) const {
+    std::vector<std::uint32_t> vertices;
+    for (const std::uint32_t t : triangles) {
+      vertices.insert(vertices.end(), mesh_.triangles[t].begin(), mesh_.triangles[t].end());
+    }
+    return points_of(std::move(vertices));
+  }
+
+  [[nodiscard]] bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points) const {
+    return std::ranges::all_of(points, [&](const Vector3d& p) { return std::abs(s.distance(p)) <= tolerance_; });
+  }
+
+  /// Does the triangle stand for a piece of the surface, the material on the side where `inside_out` says?
+  [[nodiscard]] bool stands_for(std::uint32_t t, const SurfaceValue& s, bool inside_out) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (std::abs(s.distance(mesh_.corner(t, i))) > tolerance_) return false;
+    }
+    const Vector3d& middle = mesh_.centers[t];
+    if (std::abs(s.distance(middle)) > kMostSagitta * s.radius_near(middle) + tolerance_) return false;
+    if (mesh_.heights[t] <= kSliver * tolerance_) return true;
+    const double along = s.gradient(middle).dot(mesh_.normals[t]);
+    return (inside_out ? -along : along) > kAlongNormal;
+  }
+
+  /// Free triangles, joined to the seed, that stand for the surface. Ascending.
+  std::vector<std::uint32_t> grow(const SurfaceValue& s, std::uint32_t seed) {
+    const bool inside_out = s.gradient(mesh_.centers[seed]).dot(mesh_.normals[seed]) < 0;
+    std::vector<std::uint32_t> found;
+    if (!stands_for(seed, s, inside_out)) return found;
+    ++growing_;
+    found.push_back(seed);
+    mark_[seed] = growing_;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (const std::uint32_t t : mesh_.neighbors[found[i]]) {
+        if (t == kNone || mark_[t] == growing_ || taken_[t]) continue;
+        mark_[t] = growing_;
+        if (stands_for(t, s, inside_out)) found.push_back(t);
+      }
+    }
+    std::ranges::sort(found);
+    return found;
+  }
+
+  std::optional<Candidate> candidate(Kind kind, const Sample& sample, std::uint32_t seed) {
+    std::optional<SurfaceValue> surface = fit(kind, sample);
+    if (!surface || !passes_through(*surface, sample.points)) return std::nullopt;
+    Candidate best;
+    for (int i = 0; i < kGrowings; ++i) {
+      std::vector<std::uint32_t> triangles = grow(*surface, seed);
+      if (triangles.size() <= best.triangles.size()) break;
+      best = {*surface, std::move(triangles)};
+      surface = refit(*surface, points_of_triangles(best.triangles));
+      if (!surface) break;
+    }
+    if (best.triangles.empty()) return std::nullopt;
+    const std::vector<Vector3d> points = points_of_triangles(best.triangles);
+    if (surface && passes_through(*surface, points)) best.surface = *surface;
+    if (!is_evident(best.surface, points, tolerance_)) return std::nullopt;
+    for (const std::uint32_t t : best.triangles) best.area += mesh_.areas[t];
+    return best;
+  }
+
+  /// The largest triangle of a facet.
+  [[nodiscard]] std::uint32_t seed_of(std::uint32_t facet) const {
+    return *std::ranges::max_element(facets_.all[facet].triangles, {}, [&](std::uint32_t t) { return mesh_.areas[t]; });
+  }
+
+  bool try_from(std::uint32_t facet) {
+    untried_[facet] = false;
+    std::vector<std::vector<std::uint32_t>> samples = rows(facet);
+    for (const std::size_t steps : kAround) {
+      std::vector<std::uint32_t> facets = around(facet, steps);
+      const bool is_new = std::ranges::find(samples, facets) == samples.end();
+      if (is_new) samples.push_back(std::move(facets));
+    }
+    std::optional<Candidate> best;
+    for (const Kind kind : kRoundKinds) {
+      for (const std::vector<std::uint32_t>& facets : samples) {
+        if (facets.size() < 3) continue;
+        std::optional<Candidate> next = candidate(kind, sample_of(facets), seed_of(facet));
+        if (next && (!best || next->area > kLargerByFar * best->area)) best = std::move(next);
+      }
+    }
+    if (best)
+      take(*best);
+    else if (borders_as_a_plane(facet))
+      take_plane(facet);
+    else
+      return pass_by(facet);
+    try_again_beside(regions_.back().triangles);
+    return true;
+  }
+
+  /// From beside a place where nothing fits little will.
+  bool pass_by(std::uint32_t facet) {
+    for (const FacetSide& side : facets_.all[facet].sides) {
+      if (side.smooth) untried_[side.facet] = false;
+    }
+    return false;
+  }
+
+  /// What a smooth neighbour measures across the common side.
+  [[nodiscard]] double width(std::uint32_t facet, const FacetSide& side) const {
+    return facets_.all[facet].area / side.length;
+  }
+
+  /// A piece of a round surface has neighbours about as wide as itself; a plane that passes into one has narrow ones.
+  [[nodiscard]] bool borders_as_a_plane(std::uint32_t facet) const {
+    return std::ranges::all_of(facets_.all[facet].sides, [&](const FacetSide& side) {
+      return !side.smooth || width(side.facet, side) < kNarrower * width(facet, side);
+    });
+  }
+
+  [[nodiscard]] bool is_mostly_sharp(std::uint32_t facet) const {
+    double sharp = 0, all = 0;
+    for (const FacetSide& side : facets_.all[facet].sides) {
+      all += side.length;
+      if (!side.smooth) sharp += side.length;
+    }
+    return sharp > kMostlySharp * all;
+  }
+
+  /// Planes that meet at small angles are few; pieces of a round or free surface are many, or border on one.
+  [[nodiscard]] bool are_planes(const std::vector<std::uint32_t>& joined) const {
+    return joined.size() <= kFewFacets && std::ranges::all_of(joined, [&](std::uint32_t facet) {
+             return std::ranges::all_of(facets_.all[facet].sides,
+                                        [&](const FacetSide& side) { return !side.smooth || is_free(side.facet); });
+           });
+  }
+
+  void take(const Candidate& best) {
+    const std::uint32_t first = best.triangles.front();
+    const bool hole = best.surface.gradient(mesh_.centers[first]).dot(mesh_.normals[first]) < 0;
+    Surface surface = best.surface.surface();
+    std::visit(
+        [&](auto& s) {
+          if constexpr (requires { s.hole; }) s.hole = hole;
+        },
+        surface);
+    take(std::move(surface), best.triangles);
+  }
+
+  void take(Surface surface, std::vector<std::uint32_t> triangles) {
+    for (const std::uint32_t t : triangles) {
+      taken_[t] = true;
+      ++taken_of_facet_[facets_.of_triangle[t]];
+    }
+    regions_.push_back({std::move(surface), std::move(triangles)});
+  }
+
+  /// Facets near what was taken last have other surroundings now.
+  void try_again_beside(const std::vector<std::uint32_t>& triangles) {
+    std::vector<std::uint32_t> beside;
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t n : mesh_.neighbors[t]) {
+        if (n != kNone && is_free(facets_.of_triangle[n])) beside.push_back(facets_.of_triangle[n]);
+      }
+    }
+    std::ranges::sort(beside);
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    for (const std::uint32_t facet : beside) {
+      for (const std::uint32_t near : around(facet, kAgain)) untried_[near] = true;
+    }
+  }
+
+  void take_plane(std::uint32_t facet) {
+    const std::vector<std::uint32_t>& triangles = facets_.all[facet].triangles;
+    SurfaceValue plane = plane_through(points_of_triangles(triangles));
+    if (plane.axis.dot(facets_.all[facet].normal) < 0) plane.axis = -plane.axis;
+    take(plane.surface(), triangles);
+  }
+
+  /// Planes that meet at small angles; then what fits nothing, as far as it is smooth.
+  void take_rest() {
+    std::vector<bool> seen(facets_.all.size(), false);
+    for (std::uint32_t facet = 0; facet < facets_.all.size(); ++facet) {
+      if (seen[facet] || !is_free(facet)) continue;
+      const std::vector<std::uint32_t> joined = around(facet, facets_.all.size());
+      for (const std::uint32_t f : joined) seen[f] = true;
+      const bool planes = are_planes(joined);
+      for (const std::uint32_t f : joined) {
+        if (planes || is_mostly_sharp(f)) take_plane(f);
+      }
+    }
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (!taken_[t]) take(OtherSurface{}, smooth_rest(t));
+    }
+  }
+
+  std::vector<std::uint32_t> smooth_rest(std::uint32_t seed) {
+    ++growing_;
+    std::vector<std::uint32_t> found = {seed};
+    mark_[seed] = growing_;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (const std::uint32_t t : mesh_.neighbors[found[i]]) {
+        if (t == kNone || mark_[t] == growing_ || taken_[t]) continue;
+        const bool sliver = std::min(mesh_.heights[t], mesh_.heights[found[i]]) <= kSliver * tolerance_;
+        if (!sliver && mesh_.normals[t].dot(mesh_.normals[found[i]]) <= kSmooth) continue;
+        mark_[t] = growing_;
+        found.push_back(t);
+      }
+    }
+    std::ranges::sort(found);
+    return found;
+  }
+
+  const CanonicalMesh& mesh_;
+  double tolerance_;
+  Facets facets_;
+  std::vector<Region> regions_;
+  std::vector<bool> taken_;                    // triangles
+  std::vector<std::uint32_t> taken_of_facet_;  // how many of its triangles
+  std::vector<bool> untried_;                  // facets whose surroundings have changed since they were tried
+  std::vector<bool> met_;                      // facets, while around() looks
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t growing_ = 0;
+};
+
+}  // namespace
+
+std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance) {
+  return Search(mesh, tolerance).run();
+}
+
+}  // namespace verisim::recover

@@ -1,0 +1,32 @@
+// Surfaces by least squares through vertices.
+//
+// A tessellation's vertices lie on the surface that it stands for, its triangles do not: triangles give the first
+// guess, vertices the result (Gauss-Newton with damping, on the distances).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/geometry/recover/surface_value.hpp"
+
+namespace verisim::recover {
+
+/// What a surface is fitted to, m.
+struct Sample {
+  std::vector<Vector3d> points;   ///< vertices, each once
+  std::vector<Vector3d> centers;  ///< of the facets between them …
+  std::vector<Vector3d> normals;  ///< … and their normals
+};
+
+/// The surface of this kind that is nearest to the points, however far that is; none if they do not determine one.
+[[nodiscard]] std::optional<SurfaceValue> fit(Kind kind, const Sample& sample);
+/// The same from a first guess.
+[[nodiscard]] std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points);
+
+/// The circle nearest to points of a plane, algebraically: center and radius.
+[[nodiscard]] std::optional<Vector3d> circle_through(std::span<const Eigen::Vector2d> points);
+/// The plane nearest to points.
+[[nodiscard]] SurfaceValue plane_through(std::span<const Vector3d> points);
+
+}  // namespace verisim::recover
