@@ -156,6 +156,7 @@ void inspect(const InspectOptions& o) {
   LoadOptions load;
   load.scale = o.scale;
   load.deflection = o.deflection;
+  load.recover = true;
   const std::vector<Part>& parts = inputs.model(o.model, load);
   ordered_json report;
   report["model"] = o.model;

@@ -43,7 +43,7 @@ bool same(const Pose& a, const Pose& b) {
 std::vector<Part> parts_of(const Leaf& leaf, Inputs& inputs) {
   const Node& node = *leaf.node;
   if (node.kind == Node::Kind::solid) return {inputs.solid(*scaled(node.solid, leaf.scale), LoadOptions{})};
-  const std::vector<Part>& parts = load_file(inputs, node.file, leaf.scale * node.file_scale);
+  const std::vector<Part>& parts = load_file(inputs, node.file, leaf.scale * node.file_scale, node.recover);
   if (node.part == 0) return parts;
   if (static_cast<std::size_t>(node.part) > parts.size())
     fail(ErrorKind::input, "{}: has no part {}; it has {} (modelParts lists them)", node.file, node.part, parts.size());
@@ -74,8 +74,9 @@ struct Placer {
 
 }  // namespace
 
-const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale) {
+const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale, bool recover) {
   LoadOptions options;
+  options.recover = recover;
   if (scale != 1) options.scale = scale;
   return inputs.model(file, options);
 }

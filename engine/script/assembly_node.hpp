@@ -23,6 +23,7 @@ struct Node {
   std::string file;       ///< as Inputs knows it
   int part = 0;           ///< 1 … n: this solid of the file alone; 0: all
   double file_scale = 1;  ///< Model{ scale= }
+  bool recover = false;   ///< Model{ brep= }: faces and edges of a mesh file from its triangles
   // solid
   std::shared_ptr<const Solid> solid;
   int pieces = 1;  ///< primitives and operations of `solid`, shared ones counted each time
@@ -68,8 +69,8 @@ inline constexpr int kNodeDepthMax = 100;
 /// nothing in it; a part number that the file does not have.
 [[nodiscard]] PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs);
 
-/// The parts of a model file, with the scale's meaning of LoadOptions.
-[[nodiscard]] const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale);
+/// The parts of a model file, with the meaning of scale and recover that LoadOptions has.
+[[nodiscard]] const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale, bool recover);
 
 /// A part seen from other coordinates: every point p becomes X * p. Area, volume and trimmed bounds stay.
 [[nodiscard]] Part placed(const Part& part, const Pose& X);

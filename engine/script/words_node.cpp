@@ -64,6 +64,7 @@ NodePointer model_node(lua_State* L) {
     file = text_at(L, -1, "Model: the file");
     lua_pop(L, 1);
     node->file_scale = fields.positive("scale").value_or(1);
+    node->recover = fields.boolean("brep").value_or(false);
     if (const auto part = fields.positive("part")) {
       if (*part != std::floor(*part))
         raise(L, "Model: part is {:g} but must be a whole number, 1 for the first", *part);
@@ -75,6 +76,7 @@ NodePointer model_node(lua_State* L) {
     if (!lua_isnoneornil(L, 2)) {
       Fields fields(L, 2, "Model");
       node->file_scale = fields.positive("scale").value_or(1);
+      node->recover = fields.boolean("brep").value_or(false);
       node->part = static_cast<int>(fields.positive("part").value_or(0));
       fields.finish(false);
     }
@@ -101,16 +103,18 @@ void push_bounds(lua_State* L, const Bounds& bounds) {
   lua_rawseti(L, -2, 2);
 }
 
-// modelParts(file[, {scale=}]) -> { { name=, index=, volume=, center=, bounds={min, max}, brep= }, … }
+// modelParts(file[, {scale=, brep=}]) -> { { name=, index=, volume=, center=, bounds={min, max}, brep= }, … }
 int model_parts(lua_State* L) {
   const std::string file = find_model(L, text_at(L, 1, "modelParts: the file"));
   double scale = 1;
+  bool recover = false;
   if (!lua_isnoneornil(L, 2)) {
     Fields fields(L, 2, "modelParts");
     scale = fields.positive("scale").value_or(1);
+    recover = fields.boolean("brep").value_or(false);
     fields.finish(false);
   }
-  const std::vector<Part>& parts = load_file(ScriptState::of(L).inputs, file, scale);
+  const std::vector<Part>& parts = load_file(ScriptState::of(L).inputs, file, scale, recover);
   lua_createtable(L, static_cast<int>(parts.size()), 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     lua_newtable(L);

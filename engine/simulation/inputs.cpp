@@ -32,7 +32,8 @@ std::string content_of(const std::string& name, const fs::path& path) {
 }
 
 std::string options_key(const LoadOptions& o) {
-  return fmt::format("scale={} deflection={} angle={}", o.scale, o.deflection, o.angular_deflection);
+  return fmt::format("scale={} deflection={} angle={}{}", o.scale, o.deflection, o.angular_deflection,
+                     o.recover ? " recover" : "");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ import unittest
 
 import h5py
 
-from program import ProgramTest, SMALL, VERISIM
+from program import turned_stl, ProgramTest, SMALL, VERISIM
 
 COMMANDS = ["run", "replay", "recover", "inspect", "trace", "doctor"]
 
@@ -150,6 +150,20 @@ endsolid t
         self.assertGreater(part["surface_voxels"], 300)
         self.assertGreater(part["memory_bytes"], 0)
         self.assertEqual(report["mates"], [])
+        self.assertEqual(part["faces"]["plane"], 4)
+        self.assertEqual(part["edges"]["line"], 6)
+        self.assertGreater(part["feature_sets"], 10)  # faces, edges, and what meets at corners
+
+    def test_inspect_recovers_faces_and_edges_from_triangles(self):
+        stl = self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))
+        part = self.run_json("inspect", stl, "--scale", "0.001", "--voxel", "0.001")["parts"][0]
+        self.assertEqual({k: n for k, n in part["faces"].items() if n}, {"plane": 2, "cylinder": 2})
+        self.assertEqual({k: n for k, n in part["edges"].items() if n}, {"circle": 4})
+        radii = sorted((c["radius_m"], c["hole"]) for c in part["cylinders"])
+        self.assertAlmostEqual(radii[0][0], 0.010, delta=1e-8)
+        self.assertAlmostEqual(radii[1][0], 0.016, delta=1e-8)
+        self.assertEqual([hole for _, hole in radii], [True, False])
+        self.assertGreaterEqual(part["feature_sets"], 8)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """The program under test, and a folder of its own for each test."""
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -21,6 +22,26 @@ local hand = Devices.Hand{ name = "hand", path = {
 addDevice(hand)
 grasp(hand, box)
 """
+
+
+def turned_stl(inner, outer, height, sides=96):
+    """ASCII STL of a solid of revolution about z, centred: a rod (inner = 0) or a bush. Lengths in mm."""
+    def ring(radius, z):
+        return [(radius * math.cos(2 * math.pi * i / sides), radius * math.sin(2 * math.pi * i / sides), z)
+                for i in range(sides)]
+    walls = [(ring(outer, -height / 2), ring(outer, height / 2)), (ring(outer, height / 2), ring(inner, height / 2)),
+             (ring(inner, height / 2), ring(inner, -height / 2)), (ring(inner, -height / 2), ring(outer, -height / 2))]
+    text = ["solid turned"]
+    for a, b in walls:
+        for i in range(sides):
+            j = (i + 1) % sides
+            for corners in ((a[i], a[j], b[j]), (a[i], b[j], b[i])):
+                if len(set(corners)) < 3:
+                    continue
+                text += ["facet normal 0 0 0", "outer loop"]
+                text += ["vertex {:.9g} {:.9g} {:.9g}".format(*p) for p in corners]
+                text += ["endloop", "endfacet"]
+    return "\n".join(text + ["endsolid turned", ""])
 
 
 class ProgramTest(unittest.TestCase):

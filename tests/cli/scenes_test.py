@@ -3,7 +3,7 @@ behaviour changed and why; VERISIM_GOLDEN=1 prints what is measured."""
 import os
 import unittest
 
-from program import ProgramTest, SHARED, SOURCE
+from program import turned_stl, ProgramTest, SHARED, SOURCE
 
 MODELS = os.path.join(SHARED, "models")
 
@@ -76,6 +76,31 @@ class Scenes(ProgramTest):
         self.assertGreater(by_hand["constraints"]["cylindrical"], 1000)
         for fact in ("constraints", "collision_frames", "state_hash"):
             self.assertEqual(by_hand[fact], solid[fact], fact)
+
+    def test_parts_of_bare_triangles_are_recognized_once_their_faces_are_recovered(self):
+        self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))
+        self.write("rod.stl", turned_stl(inner=0, outer=9.8, height=60))
+        script = """
+            local p = params{{ brep = true }}
+            defineSimulationParameters{{ hybrid = "{}", duration = 0.6 }}
+            addObject{{ name = "bush", fixed = true, voxelsize = mm(1),
+                       Model{{ "bush.stl", scale = 0.001, brep = p.brep }} }}
+            local rod = addObject{{ name = "rod", voxelsize = mm(1), position = {{0, 0, 0.041}}, density = 1000,
+                                   Model{{ "rod.stl", scale = 0.001, brep = p.brep }} }}
+            local hand = Devices.Hand{{ name = "hand", path = {{  -- into the bush, then against its wall
+              {{position = {{0, 0, 0.041}}}}, {{position = {{0, 0, 0.02}}, speed = 0.1}},
+              {{position = {{0.001, 0, 0.02}}, speed = 0.02}} }} }}
+            addDevice(hand)
+            grasp(hand, rod)"""
+        known = self.run_json("run", self.write("exact.lua", script.format("exact")), "-o", self.path("exact.h5"))
+        self.assertGreater(known["collision_frames"], 100)
+        self.assertLess(known["max_penetration_m"], 0.025 * 0.0002)  # of the clearance; voxels measure 1 mm
+        scenario = self.write("restore.lua", script.format("restore"))
+        known = self.run_json("run", scenario, "-o", self.path("known.h5"))
+        self.assertGreater(known["constraints"].get("cylindrical", 0), 100)
+        self.succeed("replay", self.path("known.h5"), "--verify")
+        bare = self.run_json("run", scenario, "-o", self.path("bare.h5"), "--set", "brep=false")
+        self.assertEqual(bare["constraints"], {})
 
     def test_golden_hashes(self):
         for name, options, golden in GOLDEN:
