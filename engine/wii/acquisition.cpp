@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::array kTurns = {0.0, 0.6, -0.6};  // rad of yaw to start from: Gauss-Newton finds its way from there
 // Above this, per sighted coordinate, blobs are not this head: far outside any pixel noise.
-constexpr double kCostMax = 50;
+constexpr double kCostMax = 12;
 
 /// Depth-first over the ways to name `count` LEDs.
 struct Naming {

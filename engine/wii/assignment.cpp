@@ -1,5 +1,6 @@
 #include "engine/wii/assignment.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,13 @@ constexpr double kStranger = 12;           // pixel; lamps stand still, unless t
 constexpr double kOverturned = -0.2;       // cosine of the roll: no head is tilted by more than 101 degrees
 constexpr double kRollScale = 0.5;         // rad, about how far heads are tilted
 constexpr double kSizeScale = 1;           // blob size units
-constexpr double kLedScale = 10;           // pixel, how well an unsolved LED is where the pair says
+constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly
+constexpr double kUnlikelyMax = 6;         // a head tilted by 90 degrees, or blobs that differ by two: no head
+constexpr double kLedAbsent = 100;
+constexpr double kSizeCounts = 2;    // sizes of real sensors follow distance badly: a hint, no proof
+constexpr double kMuchLikelier = 2;  // tilt and rounded sizes of a true pair differ by less
+constexpr int kDoubtsMax = 5;        // images
+constexpr double kLedScale = 10;     // pixel, how well an unsolved LED is where the pair says
 
 double distance_square(const Blob& a, const Blob& b) {
   return (a.u - b.u) * (a.u - b.u) + (a.v - b.v) * (a.v - b.v);
@@ -63,13 +70,30 @@ PairFollower::Match PairFollower::solve(const Reading& reading, int first, int s
   return {solve_two_points(pair_, pinhole_.ray(b0.u, b0.v), pinhole_.ray(b1.u, b1.v), C_LR), {first, second}};
 }
 
-PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) const {
+PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) {
   if (reading.blob_count < 2) return {};
   if (followed_ && t - t_ <= kMemory) {
-    Match match = continue_pair(t - t_, reading, C_LR);
-    if (!match.found() || match.pose.cos_roll > kOverturned) return match;
+    const Match match = continue_pair(t - t_, reading, C_LR);
+    if (!match.found()) return match;
+    if (match.pose.cos_roll > kOverturned) return reconsidered(reading, match, C_LR);
   }
   return acquire(reading, C_LR);
+}
+
+PairFollower::Match PairFollower::reconsidered(const Reading& reading, const Match& current, const Matrix3d& C_LR) {
+  Match other;
+  if (reading.blob_count > 2) {
+    const Match now = current.found() ? current : solve(reading, current.blob[0], current.blob[1], C_LR);
+    double cost = unlikeliness(reading, now, C_LR) - kMuchLikelier;
+    if (cost > 0) other = likeliest(reading, C_LR, true, cost);
+  }
+  // It is offered until it is followed: to believe in a jump takes more than one image.
+  doubts_ = other.found() ? std::min(doubts_ + 1, kDoubtsMax) : 0;
+  return doubts_ < kDoubtsMax ? current : other;
+}
+
+bool PairFollower::is_stranger(const Blob& blob, double distance_square_to_led) const {
+  return distance_square_to_stranger(blob) < distance_square_to_led;
 }
 
 PairFollower::Match PairFollower::continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const {
@@ -95,20 +119,27 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
 }
 
 PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
+  // Where further LEDs must be is known only roughly before a yaw is: they choose among pairs and refuse none.
+  double cost = kUnlikelyMax + kLedAbsent * (leds_.count - 2);
+  return likeliest(reading, C_LR, false, cost);
+}
+
+PairFollower::Match PairFollower::likeliest(const Reading& reading, const Matrix3d& C_LR, bool strangers_too,
+                                            double& cost) const {
   const auto stranger = [&](int b) {
-    return distance_square_to_stranger(reading.blobs[static_cast<std::size_t>(b)]) < kStranger * kStranger;
+    return !strangers_too &&
+           distance_square_to_stranger(reading.blobs[static_cast<std::size_t>(b)]) < kStranger * kStranger;
   };
   Match best;
-  double best_cost = std::numeric_limits<double>::infinity();
   for (int i = 0; i < reading.blob_count; ++i)
     for (int j = 0; j < reading.blob_count; ++j) {
       if (i == j || stranger(i) || stranger(j)) continue;
       const Match match = solve(reading, i, j, C_LR);
       if (!match.found() || match.pose.cos_roll <= 0) continue;
-      const double cost = unlikeliness(reading, match, C_LR);
-      if (cost >= best_cost) continue;
+      const double here = unlikeliness(reading, match, C_LR);
+      if (here >= cost) continue;
       best = match;
-      best_cost = cost;
+      cost = here;
     }
   return best;
 }
@@ -126,6 +157,11 @@ double PairFollower::unlikeliness(const Reading& reading, const Match& match, co
   const double roll = pose.sin_roll / kRollScale;
   const double unequal = (size(0) - size(1)) / kSizeScale;
   double cost = roll * roll + unequal * unequal;
+  if (size_at_1m_ > 0) {
+    const double expected = std::clamp(size_at_1m_ / pose.p_L.norm(), 1.0, 15.0);
+    const double other = ((size(0) + size(1)) / 2 - expected) / kSizeScale;
+    cost += std::min(other * other, kSizeCounts);
+  }
   const Matrix3d R_LH = rotation_about_z(pose.cos_roll, pose.sin_roll).toRotationMatrix();
   for (std::size_t led = 2; led < static_cast<std::size_t>(leds_.count); ++led) {
     const Vector3d p_R = C_LR.transpose() * (pose.p_L + R_LH * leds_.p_H[led]);
@@ -136,7 +172,7 @@ double PairFollower::unlikeliness(const Reading& reading, const Match& match, co
       if (b != match.blob[0] && b != match.blob[1])
         nearest = std::min(nearest,
                            distance_square(reading.blobs[static_cast<std::size_t>(b)], Blob{pixel.x(), pixel.y(), 0}));
-    cost += std::min(nearest / (kLedScale * kLedScale), 100.0);
+    cost += std::min(nearest / (kLedScale * kLedScale), kLedAbsent);
   }
   return cost;
 }
@@ -145,6 +181,8 @@ void PairFollower::follow(double t, const Reading& reading, const Match& match) 
   followed_ = true;
   t_ = t;
   for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];
+  const double size_at_1m = (last_[0].size + last_[1].size) / 2 * match.pose.p_L.norm();
+  size_at_1m_ = size_at_1m_ > 0 ? size_at_1m_ + kSizeLearning * (size_at_1m - size_at_1m_) : size_at_1m;
   stranger_count_ = 0;
   for (int b = 0; b < reading.blob_count; ++b)
     if (b != match.blob[0] && b != match.blob[1])

@@ -29,20 +29,30 @@ class PairFollower {
     [[nodiscard]] bool found() const { return pose.found; }
   };
   /// The pair nearest to the followed one while that is younger than 0.25 s; else, or when that one stands on its head,
-  /// the pair that looks most like a head: upright in L, equally large, further LEDs where they must be, and none of
-  /// them a blob that stood beside the head before (a lamp).
-  [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR) const;
+  /// the pair that looks most like a head, and enough: upright in L, equally large and as large as at its distance
+  /// before, further LEDs where they must be, and none of them a blob that stood beside the head before (a lamp).
+  [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR);
+  /// `current` (its pose may be missing), or another pair of this image that has looked much more like a head in five
+  /// images in a row: an LED that was dark when a lamp came is back. Only images with three blobs or more cost
+  /// anything.
+  [[nodiscard]] Match reconsidered(const Reading& reading, const Match& current, const Matrix3d& C_LR);
+  /// Whether a blob is nearer to one that stood beside the followed pair than, by this much, to an LED's place.
+  [[nodiscard]] bool is_stranger(const Blob& blob, double distance_square_to_led) const;
   /// Follow these two from now on.
   void follow(double t, const Reading& reading, const Match& match);
   void forget() {
     followed_ = false;
     stranger_count_ = 0;
+    doubts_ = 0;
+    size_at_1m_ = 0;
   }
 
  private:
   [[nodiscard]] Match solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const;
   [[nodiscard]] Match continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const;
   [[nodiscard]] Match acquire(const Reading& reading, const Matrix3d& C_LR) const;
+  /// The likeliest pair below `cost`, which becomes its unlikeliness.
+  [[nodiscard]] Match likeliest(const Reading& reading, const Matrix3d& C_LR, bool strangers_too, double& cost) const;
   [[nodiscard]] double distance_square_to_stranger(const Blob& blob) const;
   [[nodiscard]] double unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const;
 
@@ -54,6 +64,8 @@ class PairFollower {
   std::array<Blob, 2> last_;
   std::array<Blob, kSlots> strangers_;  ///< what else was in the image then
   int stranger_count_ = 0;
+  int doubts_ = 0;         ///< images in a row in which another pair was likelier
+  double size_at_1m_ = 0;  ///< of the LEDs' blobs, learned; 0: not known
 };
 
 }  // namespace verisim::wii

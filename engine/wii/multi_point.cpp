@@ -1,4 +1,5 @@
 // The trackers that fit a whole pose to many sightings: three LEDs seen by one remote, or any seen by two.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.hpp"
@@ -17,7 +18,8 @@ constexpr double kGateGrowth = 1500;      // pixel per s without a report
 constexpr double kTurnRate = 0.3;         // rad/s: how fast a yaw that is no longer seen becomes unknown
 constexpr double kStillKnown = 0.02;      // rad, of a yaw that was seen one report ago
 constexpr double kSigmaMax = 0.15;        // m: less sure than this is not valid
-constexpr double kCostMax = 50;           // per LED seen: beyond any pixel noise, so not this head
+constexpr double kCostMax = 12;           // per LED seen: beyond any pixel noise, so not this head
+constexpr int kPatience = 5;              // reports before the head is sought anew beside a strange light
 constexpr double kRollSigma = 0.5;        // rad
 constexpr double kPriorWidth = 2;         // times the settings' sigmas: where yaw is seen, belief should hardly count
 
@@ -46,10 +48,9 @@ class MultiPoint final : public TrackerBase {
     found_ = {};
     if (followed_ && t - t_followed_ <= kMemory) {
       found_ = follow(t);
+      if (strange_ >= kPatience) seek_again(t);
     } else {
-      seen_fully_ = true;
-      found_ =
-          remotes_ == 1 ? acquire_head(reading, settings(), pinhole(), solver_, upright_).solved : acquire_pairs(t);
+      found_ = acquire(t);
     }
     if (!found_.found || found_.cost > kCostMax * settings().leds.count) return;
     level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
@@ -81,12 +82,37 @@ class MultiPoint final : public TrackerBase {
     u.sigma_y = std::min(settings().pitch_sigma, kStillKnown + drift);
   }
 
+  [[nodiscard]] SolvedPose acquire(double t) {
+    strange_ = 0;
+    if (remotes_ == 2) return acquire_pairs(t);
+    seen_fully_ = true;
+    return acquire_head(views_[0].reading, settings(), pinhole(), solver_, upright_).solved;
+  }
+
+  /// LEDs are missing while other lights are in view: one of those that are followed may be a lamp.
+  void seek_again(double t) {
+    const bool seen_fully = seen_fully_;
+    const SolvedPose other = acquire(t);
+    if (other.found)
+      found_ = other;
+    else
+      seen_fully_ = seen_fully;
+  }
+
   [[nodiscard]] SolvedPose follow(double t) {
     std::array<Sighting, kSightingsMax> sightings;
     int n = 0;
-    for (int remote = 0; remote < remotes_; ++remote)
-      n += follow_in(t, remote, std::span(sightings).subspan(static_cast<std::size_t>(n)));
-    if (n < 2) return {};
+    int n_most = 0;
+    bool strange = false;
+    for (int remote = 0; remote < remotes_; ++remote) {
+      const int here = follow_in(t, remote, std::span(sightings).subspan(static_cast<std::size_t>(n)));
+      strange = strange ||
+                (here < settings().leds.count && views_[static_cast<std::size_t>(remote)].reading.blob_count > here);
+      n_most = std::max(n_most, here);
+      n += here;
+    }
+    strange_ = strange ? strange_ + 1 : 0;
+    if (n_most < 2) return {};  // one light in each of two images may be a lamp
     seen_fully_ = n >= 3;
     if (!seen_fully_) believe_last(t, upright_);
     return solver_.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright_, predicted(t));
@@ -175,6 +201,7 @@ class MultiPoint final : public TrackerBase {
   SolvedPose found_;
   bool seen_fully_ = false;  ///< this report's sightings determine yaw
   bool followed_ = false;
+  int strange_ = 0;  ///< reports in a row in which LEDs were missing and other lights in view
   double t_followed_ = 0;
   double t_full_ = 0;
   Pose X_RH_;  ///< followed pose

@@ -55,6 +55,7 @@ class Scaat final : public TrackerBase {
       view_ = view_of(seen);
       strange_ = seen < 2 && reading.blob_count >= 2 ? strange_ + 1 : 0;
       lost_ = !names_known || overturned(C_LR) || strange_ >= kPatience;
+      if (settings().leds.count == 2 && seen == 2) reconsider(C_LR);
     }
     if ((!running_ || lost_) && acquire(t, reading, C_LR)) seen = settings().leds.count;
     if (!running_) return;
@@ -77,8 +78,9 @@ class Scaat final : public TrackerBase {
     for (std::size_t led = 0; led < leds; ++led)
       if (!solver_.project(filter_.X_RH(), settings().leds.p_H[led], 0, expected[led])) return 0;
     const double spread = pinhole().fx * std::sqrt(filter_.position_variance()) / filter_.X_RH().position.z();
+    const double gate = std::min(kPixelGateMax, kPixelGate + 3 * spread);
     const Assignment blobs =
-        nearest_assignment(reading, std::span(expected).first(leds), std::min(kPixelGateMax, kPixelGate + 3 * spread));
+        without_strangers(reading, expected, nearest_assignment(reading, std::span(expected).first(leds), gate));
     const auto assigned = std::count_if(blobs.begin(), blobs.end(), [](int b) { return b >= 0; });
     const bool alone_in_view = assigned == 1;
     int seen = 0;
@@ -95,6 +97,20 @@ class Scaat final : public TrackerBase {
     if (seen >= 2) learn_size(reading.blobs[static_cast<std::size_t>(last)]);
     correct_upright(C_LR, dt);
     return seen;
+  }
+
+  /// A lamp that stands where it stood is no LED, however wide the gate has become. (The finder knows of two LEDs: it
+  /// would take a third for a lamp.)
+  [[nodiscard]] Assignment without_strangers(const Reading& reading,
+                                             const std::array<Eigen::Vector2d, kLedsMax>& expected,
+                                             Assignment blobs) const {
+    if (settings().leds.count > 2) return blobs;
+    for (std::size_t led = 0; led < 2; ++led) {
+      if (blobs[led] < 0) continue;
+      const Blob& blob = reading.blobs[static_cast<std::size_t>(blobs[led])];
+      if (follower_.is_stranger(blob, (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm())) blobs[led] = -1;
+    }
+    return blobs;
   }
 
   bool correct_pixel(const Vector3d& p_H, const Blob& blob, bool alone) {
@@ -147,37 +163,47 @@ class Scaat final : public TrackerBase {
     return (C_LR.row(1) * filter_.R_RH().col(1)).value() < kOverturned;
   }
 
-  bool acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
-    Pose X_RH;
-    Matrix6d covariance_R;
-    if (settings().leds.count == 2) {
-      const PairFollower::Match match = follower_.match(t, reading, C_LR);
-      if (!match.found()) return false;
-      const TwoPointPose& pose = match.pose;
-      const Quaterniond C_RL = Quaterniond(C_LR).conjugate();
-      X_RH = {C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()};
-      TrackerSettings held = settings();
-      held.yaw_sigma = held.pitch_sigma = kPinned;
-      const Matrix6d c = two_led_covariance(held, pinhole(), spacing_, pose.p_L, pose.cos_roll, pose.sin_roll);
-      Matrix6d turn = Matrix6d::Zero();
-      turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = C_LR.transpose();
-      covariance_R = turn * c * turn.transpose();
-    } else {
-      Upright upright;
-      upright.C_LR = C_LR;
-      upright.sigma_x = 2 * settings().yaw_sigma;
-      upright.sigma_y = 2 * settings().pitch_sigma;
-      upright.sigma_roll = 0.5;
-      const Acquired acquired = acquire_head(reading, settings(), pinhole(), solver_, upright);
-      if (!acquired.solved.found) return false;
-      X_RH = acquired.solved.X_RH;
-      covariance_R = acquired.solved.covariance;
-    }
+  /// A pair with a lamp in it moves as smoothly as a head: whether another pair looks more like one is asked all the
+  /// time.
+  void reconsider(const Matrix3d& C_LR) {
+    const PairFollower::Match better = follower_.reconsidered(reading_, pair_, C_LR);
+    if (better.blob == pair_.blob) return;
+    pair_ = better;
+    start_from(better.pose, C_LR);
+  }
+
+  void start_from(const TwoPointPose& pose, const Matrix3d& C_LR) {
+    const Quaterniond C_RL = Quaterniond(C_LR).conjugate();
+    TrackerSettings held = settings();
+    held.yaw_sigma = held.pitch_sigma = kPinned;
+    const Matrix6d c = two_led_covariance(held, pinhole(), spacing_, pose.p_L, pose.cos_roll, pose.sin_roll);
+    Matrix6d turn = Matrix6d::Zero();
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = C_LR.transpose();
+    start({C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()},
+          turn * c * turn.transpose());
+  }
+
+  void start(const Pose& X_RH, const Matrix6d& covariance_R) {
     filter_.start(X_RH, covariance_R);
     running_ = true;
     view_ = HeadFilter::View::all;
     strange_ = 0;
-    return true;
+  }
+
+  bool acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
+    if (settings().leds.count == 2) {
+      const PairFollower::Match match = follower_.match(t, reading, C_LR);
+      if (match.found()) start_from(match.pose, C_LR);
+      return match.found();
+    }
+    Upright upright;
+    upright.C_LR = C_LR;
+    upright.sigma_x = 2 * settings().yaw_sigma;
+    upright.sigma_y = 2 * settings().pitch_sigma;
+    upright.sigma_roll = 0.5;
+    const Acquired acquired = acquire_head(reading, settings(), pinhole(), solver_, upright);
+    if (acquired.solved.found) start(acquired.solved.X_RH, acquired.solved.covariance);
+    return acquired.solved.found;
   }
 
   // ---- what is said
@@ -207,7 +233,9 @@ class Scaat final : public TrackerBase {
 
   /// Tells the finder where the pair was and what else was in the image: lamps, should the head be lost.
   void admitted(double t, bool valid) override {
-    if (valid && pair_.blob[0] >= 0 && pair_.blob[1] >= 0) follower_.follow(t, reading_, pair_);
+    if (!valid || pair_.blob[0] < 0 || pair_.blob[1] < 0) return;
+    pair_.pose.p_L = filter_.X_RH().position;  // only how far it is counts
+    follower_.follow(t, reading_, pair_);
   }
   void restart() override {
     running_ = false;

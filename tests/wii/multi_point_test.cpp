@@ -74,5 +74,24 @@ TEST(Stereo, GoesOnWithEitherRemoteAlone) {
   }
 }
 
+// A lamp in both images is no head: not while the LEDs are dark, and not instead of them afterwards.
+TEST(Stereo, DoesNotFollowALamp) {
+  const ValidationRow row = row_of("stereo", "dropout-both", "lamp");
+  EXPECT_EQ(row.false_validity, 0);
+  EXPECT_LE(row.position.max, 0.05);
+}
+
+// The lamp comes in the very moment in which an LED goes dark, and is taken for it. Once all three lights are in view
+// the right pair is found again.
+TEST(TwoLeds, ComeBackFromALampThatTookAnLedsPlace) {
+  for (const char* tracker : {"geometric", "scaat"}) {
+    SCOPED_TRACE(tracker);
+    const ValidationRow row = row_of(tracker, "dropout-one", "lamp");
+    EXPECT_LE(row.position.p95, 0.03);
+    EXPECT_GE(row.within_95, 0.95);
+    EXPECT_GE(row.availability, 0.99);
+  }
+}
+
 }  // namespace
 }  // namespace verisim::wii
