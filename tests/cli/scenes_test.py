@@ -111,7 +111,7 @@ class Scenes(ProgramTest):
 GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "f23ebc717e6c88f4"),
     ("peg_in_hole_step", ["--duration", "3"], "cc4ddd266b58443d"),
-    ("head_tracking", [], "f9b4f8ab60e20f59"),
+    ("head_tracking", [], "9f34bf0cc5d117f6"),
     ("slide", [], "45c9931769c9894e"),
     ("stack", [], "8230578803899852"),
 ]
