@@ -73,7 +73,7 @@ PairFollower::Match PairFollower::solve(const Reading& reading, int first, int s
 PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) {
   if (reading.blob_count < 2) return {};
   if (followed_ && t - t_ <= kMemory) {
-    const Match match = continue_pair(t - t_, reading, C_LR);
+    Match match = continue_pair(t - t_, reading, C_LR);
     if (!match.found()) return match;
     if (match.pose.cos_roll > kOverturned) return reconsidered(reading, match, C_LR);
   }
