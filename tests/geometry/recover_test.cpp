@@ -323,15 +323,22 @@ TEST_F(RecoverModels, FindsTheHolesOfTheTaskBoard) {
   EXPECT_EQ(testing::face_counts(prism), (Counts{{"plane", 10}}));
 }
 
-TEST_F(RecoverModels, FindsPegsWrittenWithSixDigits) {
-  const std::map<std::string, double> pegs = {{"factory_round_peg_8mm_tight.obj", 0.0039975},
-                                              {"factory_round_peg_8mm_loose.obj", 0.003993},
-                                              {"factory_round_peg_16mm_loose.obj", 0.0079915}};
-  for (const auto& [name, radius] : pegs) {
-    Part peg = testing::load(testing::model_path("factory_pegs/" + name)).front();
-    recover_brep(peg);
-    EXPECT_EQ(testing::face_counts(peg), (Counts{{"plane", 2}, {"cylinder", 1}, {"cone", 2}})) << name;
-    EXPECT_NEAR(faces_of_kind<Cylinder>(peg).at(0).radius, radius, 0.001 * radius);
+TEST_F(RecoverModels, FindsPegsAndHolesWrittenWithSixDecimals) {
+  const std::map<std::string, double> radii = {
+      {"factory_round_peg_8mm_tight.obj", 0.0039975},     {"factory_round_peg_8mm_loose.obj", 0.003993},
+      {"factory_round_peg_16mm_loose.obj", 0.0079915},    {"industreal_round_peg_8mm.obj", 0.003993},
+      {"factory_round_hole_8mm_subdiv_3x.obj", 0.004050}, {"factory_round_hole_16mm_subdiv_3x.obj", 0.008250},
+  };
+  const Counts peg = {{"plane", 2}, {"cylinder", 1}, {"cone", 2}}, hole = {{"plane", 6}, {"cylinder", 1}};
+  for (const auto& [name, radius] : radii) {
+    Part part = testing::load(testing::model_path("factory_pegs/" + name)).front();
+    recover_brep(part);
+    const bool is_hole = name.find("hole") != std::string::npos;
+    EXPECT_EQ(testing::face_counts(part), is_hole ? hole : peg) << name;
+    const std::vector<Cylinder> cylinders = faces_of_kind<Cylinder>(part);
+    ASSERT_EQ(cylinders.size(), 1U) << name;
+    EXPECT_NEAR(cylinders[0].radius, radius, 0.001 * radius) << name;
+    EXPECT_EQ(cylinders[0].hole, is_hole) << name;
   }
 }
 
