@@ -37,8 +37,8 @@ TEST_F(InputsTest, ReadsWithinItsFolderAndRemembersWhatItRead) {
 
 TEST_F(InputsTest, RefusesWhatLiesOutside) {
   Inputs inputs = Inputs::live(top_ / "scene", {});
-  for (const std::string name :
-       {"../outside.txt", (top_ / "outside.txt").c_str(), "link.txt", "../scene/../outside.txt"}) {
+  for (const std::string& name : {std::string("../outside.txt"), (top_ / "outside.txt").string(),
+                                  std::string("link.txt"), std::string("../scene/../outside.txt")}) {
     EXPECT_THROW((void)inputs.read(name), Error) << name;
     EXPECT_FALSE(inputs.exists(name)) << name;
   }
