@@ -12,6 +12,7 @@
 #include "engine/constraint/recognition.hpp"
 #include "engine/constraint/recognition_table.hpp"
 #include "engine/constraint/recognizers.hpp"
+#include "tests/constraint/contacts.hpp"
 #include "tests/constraint/parts.hpp"
 
 namespace verisim::bench {
@@ -190,35 +191,21 @@ BENCHMARK(BM_Table71)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 /// Contacts as a query gives them: a ring of 390 around the pin, in runs of one pair of sets, `rims` in a hundred of
 /// them at the rim (two constraints to compare).
-struct Contacts {
-  std::vector<float> x, y, z, fx, fy, fz;
-  std::vector<FeatureSetId> a, b;
-  explicit Contacts(std::int64_t rims) {
-    constexpr int kContacts = 390;
-    const RandomStream r(3, "contacts");
-    for (std::uint64_t i = 0; i < kContacts; ++i) {
-      const auto draw = [&](std::uint64_t k) { return static_cast<float>(2 * r.uniform(8 * i + k) - 1); };
-      const Vector3d p = Vector3d(draw(0), draw(1), 0).normalized() * 0.075;
-      x.push_back(static_cast<float>(p.x())), y.push_back(static_cast<float>(p.y())), z.push_back(0.1F * draw(2));
-      fx.push_back(draw(3)), fy.push_back(draw(4)), fz.push_back(draw(5));
-      const bool is_rim = static_cast<std::int64_t>((i / 10 * 37) % 100) < rims;
-      a.push_back(is_rim ? test::block_set::rim : test::block_set::wall);
-      b.push_back(is_rim ? test::pin_set::edge : test::pin_set::side);
-    }
+test::Contacts ring_of_contacts(std::int64_t rims) {
+  constexpr std::uint64_t kContacts = 390;
+  const RandomStream r(3, "contacts");
+  test::Contacts contacts;
+  contacts.origin.setZero();
+  for (std::uint64_t i = 0; i < kContacts; ++i) {
+    const auto draw = [&](std::uint64_t k) { return 2 * r.uniform(8 * i + k) - 1; };
+    Vector3d point = Vector3d(draw(0), draw(1), 0).normalized() * 0.075;
+    point.z() = 0.1 * draw(2);
+    const bool is_rim = static_cast<std::int64_t>((i / 10 * 37) % 100) < rims;
+    contacts.add(point, {draw(3), draw(4), draw(5)}, is_rim ? test::block_set::rim : test::block_set::wall,
+                 is_rim ? test::pin_set::edge : test::pin_set::side);
   }
-  ContactColumns columns() {
-    return {static_cast<std::uint32_t>(x.size()),
-            x.data(),
-            y.data(),
-            z.data(),
-            fx.data(),
-            fy.data(),
-            fz.data(),
-            a.data(),
-            b.data(),
-            Vector3d::Zero()};
-  }
-};
+  return contacts;
+}
 
 /// A frame of restoration: everything that `restore` adds to `off` but the copying of set ids. Argument: contacts at
 /// the rim, per cent.
@@ -226,8 +213,8 @@ void BM_RestoreFrame(benchmark::State& state) {
   const EntitySets a = test::block_with_hole();
   const EntitySets b = test::pin();
   ConstraintLink link(a, b);
-  const Contacts fresh(state.range(0));
-  Contacts contacts = fresh;
+  const test::Contacts fresh = ring_of_contacts(state.range(0));
+  test::Contacts contacts = fresh;
   std::int64_t frame = 0;
   for (auto _ : state) {
     contacts.fx = fresh.fx, contacts.fy = fresh.fy, contacts.fz = fresh.fz;

@@ -134,7 +134,7 @@ std::vector<std::string> ids() {
 }  // namespace
 
 void add_reproduce(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("reproduce", "Every figure that the dissertation reports, measured again");
+  auto* command = app.add_subcommand("reproduce", "The dissertation's figures, measured again side by side");
   auto o = std::make_shared<Options>();
   command->add_option("-o,--out", o->out, "Folder for run files and tables")->capture_default_str();
   command->add_option("--only", o->only, "Only these (repeatable)")->take_all()->check(CLI::IsMember(ids()));

@@ -29,7 +29,14 @@ std::vector<Row> r3_collisions(const Workshop& workshop) {
        "one for each pair of feature sets that ever met; a rim's voxels here hold the rim itself beside its faces",
        {file}},
       {"R3", "misses that found no constraint", "", 3.0, number(run.null_misses), {}, "as above", {file}},
-      {"R3", "misses that found one", "", 1.0, number(found), {}, "the pin's wall in the hole's wall", {file}},
+      {"R3",
+       "misses that found one",
+       "",
+       1.0,
+       number(found),
+       {},
+       "of the pairs of feature sets that met; walls with walls, and rims with either",
+       {file}},
   };
 }
 

@@ -22,7 +22,8 @@ bool is_below(const fs::path& path, const fs::path& folder) {
 std::string content_of(const std::string& name, const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error))
-    fail(ErrorKind::input, "{}: there is no such file; check the name and the folder", name);
+    fail(ErrorKind::input, "{}: there is no such file in {}; check the name and the folder", name,
+         path.parent_path().string());
   if (fs::is_directory(path, error)) fail(ErrorKind::input, "{}: is a folder, a file is wanted", name);
   std::ifstream in(path, std::ios::binary);
   std::ostringstream content;
