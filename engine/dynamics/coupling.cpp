@@ -51,10 +51,12 @@ Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const W
           rest_within(coupling.torque_max, spring.torque, damper.torque)};
 }
 
+double coupling_energy(const Coupling& coupling, const CouplingForce& force) {
+  return 0.5 * coupling.stiffness * force.d.squaredNorm() + 0.5 * coupling.angular_stiffness * force.e.squaredNorm();
+}
+
 double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
-  const Vector3d d = target.p_WC - body.p_WC;
-  const Vector3d e = vector_from_rotation(target.R_WB * body.R_WB.conjugate());
-  return 0.5 * coupling.stiffness * d.squaredNorm() + 0.5 * coupling.angular_stiffness * e.squaredNorm();
+  return coupling_energy(coupling, coupling_force(coupling, body, target));
 }
 
 }  // namespace verisim

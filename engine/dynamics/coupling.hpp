@@ -68,6 +68,7 @@ struct CouplingForce {
 [[nodiscard]] Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const Wrench& damper);
 
 /// Energy stored in the springs [J].
+[[nodiscard]] double coupling_energy(const Coupling& coupling, const CouplingForce& force);
 [[nodiscard]] double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target);
 
 }  // namespace verisim

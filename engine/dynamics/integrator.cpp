@@ -1,6 +1,8 @@
 #include "engine/dynamics/integrator.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 
 namespace verisim {
 namespace {
@@ -38,14 +40,24 @@ Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
 }
 
-/// Works of the loads, given the wrenches that were really applied. `external` is constant: its potential is linear.
+/// Potential energy of `external`, which is constant, but for a constant, and of the coupling: as the step keeps it.
+double potential(const RigidBody& body, const Loads& loads, double shadow_dt) {
+  double energy = shadow_energy(loads.external, body, shadow_dt);
+  if (loads.coupling == nullptr) return energy;
+  const CouplingForce force = coupling_force(*loads.coupling, body, loads.target);
+  return energy + coupling_energy(*loads.coupling, force) + shadow_energy(force.spring, body, shadow_dt);
+}
+
+/// Works of the loads, given the wrenches that were really applied. `energy_before`: their potential() at the start.
+/// `shadow_dt`: dt if the step is velocity-first, else 0.
 StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion, const Wrench& spring,
-                 const Wrench& damper, const Wrench& contact, double energy_before, double dt) {
+                 const Wrench& damper, const Wrench& contact, double energy_before, double dt, double shadow_dt) {
   StepWork work;
   const Vector6d half_way = dt * motion.middle;
   work.contact = contact;
   work.contact_work = stacked(contact).dot(half_way);
-  work.numerical = motion.turned + stacked(loads.external).dot(dt * motion.during - half_way);
+  const double stored = potential(body, loads, shadow_dt) - energy_before;
+  work.numerical = motion.turned + stacked(loads.external).dot(dt * motion.during - half_way) - stored;
   if (loads.coupling == nullptr) return work;
 
   const Vector6d target_moved = dt * stacked(loads.target.v_C, loads.target.omega);
@@ -53,28 +65,45 @@ StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion
   work.coupling_damper = damper;
   work.input = stacked(damper).dot(target_moved);
   work.damper = stacked(damper).dot(target_moved - half_way);
-  const double stored = coupling_energy(*loads.coupling, body, loads.target) - energy_before;
-  work.numerical -= stacked(spring).dot(half_way) + stored;
+  work.numerical -= stacked(spring).dot(half_way);
   return work;
 }
 
-double stored_before(const RigidBody& body, const Loads& loads) {
-  return loads.coupling == nullptr ? 0 : coupling_energy(*loads.coupling, body, loads.target);
+/// The share of the contact `f` that may act: 1, or the least at which its work meets the budget. `once`: u0 + u_free.
+/// Below the budget's parabola the share is 1 without a rounding, so that what needs no limit keeps its bits.
+double share_within(double budget, const Vector6d& f, const Vector6d& once, const Vector6d& du, double dt) {
+  const double a = 0.5 * dt * f.dot(du);
+  const double b = 0.5 * dt * f.dot(once);
+  if (!(a + b > budget)) return 1;
+  if (!(a > 0)) return 0;
+  return std::clamp((std::sqrt(b * b + 4 * a * budget) - b) / (2 * a), 0.0, 1.0);
 }
 
 }  // namespace
 
 StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
-  const double energy_before = stored_before(body, loads);
+  const double energy_before = potential(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
   const Wrench damper =
       loads.coupling == nullptr ? Wrench{} : damper_and_clutch(*loads.coupling, spring, loads.coupling_at_start.damper);
-  const Vector3d force = loads.external.force + loads.contact.force + spring.force + damper.force;
-  const Vector3d torque = loads.external.torque + loads.contact.torque + spring.torque + damper.torque;
-  const Vector6d during =
-      stacked(body.v_C + dt / body.mass * force, body.omega + dt * (body.inertia_inverse_W() * torque));
-  const Motion motion = advance(body, during, dt);
-  return account(body, loads, motion, spring, damper, loads.contact, energy_before, dt);
+  const Matrix3d inertia_inverse = body.inertia_inverse_W();
+  const auto sped_up = [&](const Wrench& w) {
+    return stacked(dt / body.mass * w.force, dt * (inertia_inverse * w.torque));
+  };
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  Wrench contact = loads.contact;
+  if (std::isfinite(loads.contact_budget)) {
+    Wrench others = loads.external;
+    others += spring;
+    others += damper;
+    const double share =
+        share_within(loads.contact_budget, stacked(contact), 2 * u0 + sped_up(others), sped_up(contact), dt);
+    contact = {share * contact.force, share * contact.torque};
+  }
+  const Vector3d force = loads.external.force + contact.force + spring.force + damper.force;
+  const Vector3d torque = loads.external.torque + contact.torque + spring.torque + damper.torque;
+  const Motion motion = advance(body, u0 + sped_up({force, torque}), dt);
+  return account(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
 }
 
 namespace {
@@ -146,19 +175,30 @@ ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt
 
 StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
                       const Wrench& solved, double dt) {
-  const double energy_before = stored_before(body, loads);
+  const double energy_before = potential(body, loads, 0);
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Wrench contact = solved;
   if (step.with_contact) contact += wrench_of(contact_at_end(body, loads, u1, dt));
   const Wrench spring = wrench_of(step.spring - dt * (step.K * u1));
   const Wrench damper = wrench_of(step.damper + step.D * (u0 - u1));
   const Motion motion = advance(body, u1, dt);
-  return account(body, loads, motion, spring, damper, contact, energy_before, dt);
+  return account(body, loads, motion, spring, damper, contact, energy_before, dt, 0);
 }
 
 StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
-  const ImplicitStep step = begin_implicit(body, loads, dt);
-  return end_implicit(body, loads, step, step.free, {}, dt);
+  ImplicitStep step = begin_implicit(body, loads, dt);
+  if (!step.with_contact || !std::isfinite(loads.contact_budget))
+    return end_implicit(body, loads, step, step.free, {}, dt);
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  const Vector6d contact = contact_at_end(body, loads, step.free, dt);
+  const Vector6d with_all = step.free;
+  if (!(0.5 * dt * contact.dot(u0 + with_all) > loads.contact_budget))
+    return end_implicit(body, loads, step, with_all, {}, dt);
+  // What contact has become by the end of the step, as a constant: all of it gives with_all again, none step.free.
+  assemble(body, loads, dt, false, step);
+  const Vector6d du = with_all - step.free;
+  const double share = share_within(loads.contact_budget, contact, u0 + step.free, du, dt);
+  return end_implicit(body, loads, step, step.free + share * du, wrench_of(share * contact), dt);
 }
 
 }  // namespace verisim

@@ -11,9 +11,21 @@
 // contact only pushes: if its wrench at the end of the step would point against the one at the start, or there was none
 // at the start, the step is taken without it.
 //
+// Energy: a velocity-first step keeps a spring's energy not as U but as U + dt/2 f.u, exactly if the spring is linear
+// and u along it: f0.(u0 + u1)/2 dt = [U + dt/2 f.u] before - after, where u1 - u0 = dt M^-1 f0. shadow_energy is that
+// second term (of the modified, or shadow, Hamiltonian): what it lends at one moment it takes back at the next.
+//
+// Contact that must not give more energy than it was given (Loads::contact_budget): a passivity controller as
+// Hannaford's and Ryu's, but one that knows the step's work before it is done and not a step later. The work of a
+// contact of which the share s acts is w(s) = s dt f.(u0 + u_free + s du)/2, u_free the new velocity without it, du
+// what all of it adds. If w(1) exceeds the budget, the s at which w(s) meets it acts. It never pulls, nor weakens what
+// resists a motion.
+//
 // Rotation keeps angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then omega = I1^-1 L1.
 // Spin energy stays below |L|^2 / (2 I_min) whatever the speed: a fast needle cannot blow up.
 #pragma once
+
+#include <limits>
 
 #include "engine/base/pose.hpp"
 #include "engine/dynamics/body.hpp"
@@ -28,7 +40,8 @@ struct Loads {
   Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
   Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
   Vector6d contact_drift = Vector6d::Zero();  ///< sum of K times the twist of the other body at C: a wall that moves
-  const Coupling* coupling = nullptr;         ///< null: not held
+  double contact_budget = std::numeric_limits<double>::infinity();  ///< J, >= 0: work that contact may do on the body
+  const Coupling* coupling = nullptr;                               ///< null: not held
   CouplingForce coupling_at_start;
   CouplingTarget target;
 };
@@ -46,6 +59,11 @@ struct StepWork {
 
 [[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
 [[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
+
+/// [J] of a potential whose force on the body is `force`, while steps of step_semi_implicit advance it (see above).
+[[nodiscard]] inline double shadow_energy(const Wrench& force, const RigidBody& body, double dt) {
+  return 0.5 * dt * (force.force.dot(body.v_C) + force.torque.dot(body.omega));
+}
 
 /// The implicit step in two halves, for contacts that are solved between them (engine/exact): all of the loads are in
 /// A u1 = b, so that u1 = A^-1 b is the velocity without those contacts.

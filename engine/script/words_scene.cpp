@@ -76,6 +76,7 @@ int define_simulation_parameters(lua_State* L) {
     if (*ratio < 0) raise(L, "contactDampingRatio is {:g} but must not be negative", *ratio);
     p.contact_damping_ratio = *ratio;
   }
+  p.passive_contacts = fields.boolean("passiveContacts").value_or(p.passive_contacts);
   state.scene.grasp_distance = fields.positive("graspDistance").value_or(state.scene.grasp_distance);
   if (const auto contact = fields.text("contact"); contact && *contact != "voxmap")
     raise(L, "contact is '{}' but this version knows 'voxmap' only", *contact);

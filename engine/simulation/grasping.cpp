@@ -89,12 +89,18 @@ CouplingTarget Simulation::Implementation::target_of(std::size_t d) const {
 }
 
 EnergyState Simulation::Implementation::energy_now() const {
+  const double shadow_dt = parameters.integrator == Integrator::semi_implicit ? dt : 0;
   EnergyState e;
   for (const Body& body : bodies) {
     if (!body.can_move) continue;
     e.kinetic += body.rigid.kinetic_energy();
-    if (parameters.all_bodies_are_dynamic) e.gravity -= body.rigid.mass * parameters.gravity.dot(body.rigid.p_WC);
-    if (body.held_by != kNone) e.coupling += coupling_energy(body.coupling, body.rigid, target_of(body.held_by));
+    if (parameters.all_bodies_are_dynamic) {
+      const Vector3d weight = body.rigid.mass * parameters.gravity;
+      e.gravity += shadow_energy({weight, Vector3d::Zero()}, body.rigid, shadow_dt) - weight.dot(body.rigid.p_WC);
+    }
+    if (body.held_by == kNone) continue;
+    const CouplingForce pull = coupling_force(body.coupling, body.rigid, target_of(body.held_by));
+    e.coupling += coupling_energy(body.coupling, pull) + shadow_energy(pull.spring, body.rigid, shadow_dt);
   }
   return e;
 }

@@ -42,6 +42,7 @@ struct SimulationParameters {
   bool all_bodies_are_dynamic = false;  ///< false: bodies that no device holds do not move
   double contact_stiffness = 10000;     ///< N/m per contact, before the stability rule (contact/penalty.hpp)
   double contact_damping_ratio = 0.5;   ///< of the critical damping of the contact stiffness in force
+  bool passive_contacts = true;  ///< contacts that `restore` or `blend` changed give no more energy than they got
 };
 
 struct BodyDescription {

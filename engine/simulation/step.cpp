@@ -130,6 +130,7 @@ void Simulation::Implementation::count_contacts(Link& link, std::uint32_t contac
 void Simulation::Implementation::respond() {
   for (Body& body : bodies) {
     body.links_touching = 0;
+    body.reshaped = false;
     body.loads.contact = {};
     body.loads.contact_stiffness.setZero();
     body.loads.contact_damping.setZero();
@@ -160,6 +161,7 @@ void Simulation::Implementation::respond() {
     using Matrices = CollisionLink::Matrices;
     const bool restored = link.method == Hybrid::restore;
     if (restored) restore(link);
+    if (link.method != Hybrid::off) bodies[link.first].reshaped = bodies[link.second].reshaped = true;
     link.contact->sum_up(first, second,
                          !implicit ? Matrices::none : (restored ? Matrices::turned : Matrices::as_found));
     link.depth_max = link.contact->depth_max();
@@ -202,6 +204,8 @@ void Simulation::Implementation::integrate() {
     body.contact_wrench = body.loads.contact;
     body.contact_wrench += body.exact_wrench;
     if (!moves(body)) continue;  // what nobody holds does not move
+    body.loads.contact_budget = body.reshaped && parameters.passive_contacts ? std::max(0.0, ledger.contact())
+                                                                             : std::numeric_limits<double>::infinity();
     const StepWork work =
         body.solved ? end_implicit(body.rigid, body.loads, body.implicit, body.velocity, body.exact_wrench, dt)
         : parameters.integrator == Integrator::implicit ? step_implicit(body.rigid, body.loads, dt)

@@ -42,6 +42,7 @@ struct Body {
   Loads loads;
   std::uint64_t contacts = 0;
   unsigned links_touching = 0;  ///< of the last frame: shares the stability budget
+  bool reshaped = false;        ///< a hybrid method changed forces of its contacts: they must not give energy
   bool solved = false;          ///< by the exact response: moves with `velocity`
   std::size_t island = kNone;   ///< of bodies that the exact response solves together: its first body
   int in_solver = exact::kFixed;

@@ -65,9 +65,13 @@ class Reproduce(ProgramTest):
     def test_r9_parts_that_contradict_each_other_never_assemble(self):
         report, _ = self.reproduce("--only", "R9")
         here = {row["what"]: row["here"] for row in report["rows"]}
-        self.assertEqual(here["angled pins (fig. 8.1): assembles"], "0 of 2")
-        self.assertEqual(here["pins too far apart (fig. 8.2): assembles"], "0 of 2")
-        self.assertEqual(here["one of these pins alone: assembles"], "2 of 2")
+        for hybrid in ("restore", "exact"):
+            self.assertEqual(here[f"angled pins (fig. 8.1), {hybrid}: assembles"], "0 of 2")
+            self.assertEqual(here[f"pins too far apart (fig. 8.2), {hybrid}: assembles"], "0 of 2")
+            self.assertEqual(here[f"one of these pins alone, {hybrid}: assembles"], "2 of 2")
+        gained = [energy for what, energy in here.items() if "energy gained" in what]
+        self.assertEqual(len(gained), 6)
+        self.assertLess(max(gained), 1e-12)
         for file in report["runs"]:
             if file.endswith(".csv"):
                 with open(self.path(file)) as table:

@@ -109,11 +109,11 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "f23ebc717e6c88f4"),
-    ("peg_in_hole_step", ["--duration", "3"], "cc4ddd266b58443d"),
-    ("head_tracking", [], "9f34bf0cc5d117f6"),
-    ("slide", [], "45c9931769c9894e"),
-    ("stack", [], "8230578803899852"),
+    ("peg_in_hole", ["--duration", "3"], "48a4d45e9e7ee7ff"),
+    ("peg_in_hole_step", ["--duration", "3"], "864bdb1e9c923816"),
+    ("head_tracking", [], "d78bb0101a9b08f1"),
+    ("slide", [], "27a4259b53a11710"),
+    ("stack", [], "66e945f3625d6f5f"),
 ]
 
 if __name__ == "__main__":

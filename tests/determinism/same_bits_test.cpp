@@ -38,13 +38,13 @@ struct Golden {
 };
 
 const std::map<std::string, Golden> kGolden = {
-    {"pin_in_hole", {"cc7f2514b8a857b4", 735}},
-    {"pin_in_hole_implicit", {"e622b28d5f9478de", 729}},
-    {"pin_restored", {"31e106df38a13804", 737, 737}},
-    {"pin_restored_implicit", {"10e431f9559f2c32", 733, 733}},
-    {"pin_blended", {"7e598a0b8cef1c1b", 1052, 1052}},
-    {"falling_boxes", {"89e96cf0cda6ee07", 440}},
-    {"falling_boxes_implicit", {"a6d2ed6fed2b64b8", 440}},
+    {"pin_in_hole", {"b3a6adf4b0bef3af", 735}},
+    {"pin_in_hole_implicit", {"2b121702d4905d0d", 729}},
+    {"pin_restored", {"fc0c97a6e19baecd", 737, 737}},
+    {"pin_restored_implicit", {"270472bf15960815", 733, 733}},
+    {"pin_blended", {"430f22201bd4f98a", 1045, 1045}},
+    {"falling_boxes", {"a5814367306911d5", 440}},
+    {"falling_boxes_implicit", {"16960d205734924e", 440}},
 };
 
 TEST(SameBits, AsWhenTheGoldenHashesWereWritten) {

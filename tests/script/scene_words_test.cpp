@@ -12,7 +12,7 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   WrittenScenario written(R"(defineSimulationParameters{
     timestep = 0.002, gravity = {0, 0, -9.81}, seed = 7, duration = 3, frameRate = 30, integrator = "implicit",
     hybrid = "off", alignment = "pavlik", reduction = "exactly-one", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
-    limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, graspDistance = 0.2 })");
+    limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, passiveContacts = false, graspDistance = 0.2 })");
   const Scene& scene = written.build();
   const SimulationParameters& p = scene.parameters;
   EXPECT_EQ(p.timestep, 0.002);
@@ -29,6 +29,7 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   EXPECT_TRUE(p.all_bodies_are_dynamic);
   EXPECT_EQ(p.contact_stiffness, 5000);
   EXPECT_EQ(p.contact_damping_ratio, 0.7);
+  EXPECT_FALSE(p.passive_contacts);
   EXPECT_EQ(scene.grasp_distance, 0.2);
 }
 

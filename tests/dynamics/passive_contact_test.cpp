@@ -1,0 +1,119 @@
+// A contact with a budget gives no more energy than that, and is otherwise as it was (Loads::contact_budget).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/base/random.hpp"
+#include "engine/dynamics/integrator.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace verisim {
+namespace {
+
+using test::brick;
+using test::tolerance;
+
+using Step = StepWork (*)(RigidBody&, const Loads&, double);
+
+constexpr double kStep = 1e-3;
+
+/// A body that flies and turns against a contact somewhere on it, drawn from `r`: leaving or approaching, with a hand's
+/// pull beside it.
+struct Case {
+  RigidBody body = brick(0.5, {0.1, 0.2, 0.3});
+  Loads loads;
+  explicit Case(const RandomStream& r, std::uint64_t i) {
+    const auto vector = [&](std::uint64_t k, double size) {
+      const std::uint64_t at = 64 * i + 3 * k;
+      return Vector3d(size * r.normal(at), size * r.normal(at + 1), size * r.normal(at + 2));
+    };
+    body.v_C = vector(0, 0.1);
+    body.omega = vector(1, 0.5);
+    loads.external.force = vector(2, 5);
+    const Vector3d arm = vector(3, 0.1);
+    const Vector3d normal = vector(4, 1).normalized();
+    const double k = 3000, depth = 2e-3;
+    Vector6d J;
+    J << normal, arm.cross(normal);
+    loads.contact = {k * depth * J.head<3>(), k * depth * J.tail<3>()};
+    loads.contact_stiffness = k * J * J.transpose();
+    loads.contact_damping = 2 * J * J.transpose();
+  }
+};
+
+class PassiveContact : public testing::TestWithParam<Step> {};
+
+TEST_P(PassiveContact, GivesItsBudgetAndNoMore) {
+  const RandomStream r(1, "passive contacts");
+  int limited = 0;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const Case start(r, i);
+    for (const double budget : {0.0, 1e-6, 1e-4}) {
+      Case free = start;
+      const StepWork all = GetParam()(free.body, free.loads, kStep);
+      Case tight = start;
+      tight.loads.contact_budget = budget;
+      const StepWork work = GetParam()(tight.body, tight.loads, kStep);
+      EXPECT_LE(work.contact_work, budget + tolerance(1e-16));
+      if (all.contact_work <= budget) continue;
+      ++limited;
+      EXPECT_GE(work.contact_work, budget - tolerance(1e-16)) << "no less either";
+      const double angle = work.contact.force.dot(all.contact.force);
+      EXPECT_GE(angle, 0) << "it never pulls";
+      EXPECT_LE(angle, all.contact.force.squaredNorm() * (1 + 1e-12));
+    }
+  }
+  EXPECT_GT(limited, 500);
+}
+
+// Bit for bit: what only resists, or stays within its budget, is as if there were none.
+TEST_P(PassiveContact, ChangesNothingWithinItsBudget) {
+  const RandomStream r(2, "passive contacts");
+  int unlimited = 0;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    Case free(r, i);
+    Case tight = free;
+    const StepWork all = GetParam()(free.body, free.loads, kStep);
+    tight.loads.contact_budget = 1e-5;
+    if (all.contact_work > tight.loads.contact_budget) continue;
+    ++unlimited;
+    const StepWork work = GetParam()(tight.body, tight.loads, kStep);
+    EXPECT_EQ(work.contact.force, all.contact.force);
+    EXPECT_EQ(tight.body.v_C, free.body.v_C);
+    EXPECT_EQ(tight.body.omega, free.body.omega);
+    EXPECT_EQ(work.contact_work, all.contact_work);
+  }
+  EXPECT_GT(unlimited, 200);
+}
+
+// A body at rest that finds itself in a wall and is pushed into it: the wall holds it and does not throw it out.
+TEST_P(PassiveContact, WithoutABudgetHoldsABodyAtRest) {
+  RigidBody body = brick(0.5, {0.1, 0.1, 0.1});
+  Loads loads;
+  loads.external.force = {0, 0, -2};
+  loads.contact.force = {0, 0, 10};
+  loads.contact_stiffness(2, 2) = 5000;
+  loads.contact_budget = 0;
+  const StepWork work = GetParam()(body, loads, kStep);
+  EXPECT_LE(std::abs(work.contact.force.z() - 2), tolerance(1e-12));
+  EXPECT_LE(std::abs(body.v_C.z()), tolerance(1e-15));
+}
+
+// A hand that pulls out of a wall without a budget feels nothing of it.
+TEST_P(PassiveContact, DoesNotHoldBackWhatLeaves) {
+  RigidBody body = brick(0.5, {0.1, 0.1, 0.1});
+  Loads loads;
+  loads.external.force = {0, 0, 3};
+  loads.contact.force = {0, 0, 10};
+  loads.contact_stiffness(2, 2) = 5000;
+  loads.contact_budget = 0;
+  const StepWork work = GetParam()(body, loads, kStep);
+  EXPECT_EQ(work.contact.force.z(), 0);
+  EXPECT_LE(std::abs(body.v_C.z() - 6 * kStep), tolerance(1e-15));
+}
+
+INSTANTIATE_TEST_SUITE_P(BothIntegrators, PassiveContact, testing::Values(step_semi_implicit, step_implicit));
+
+}  // namespace
+}  // namespace verisim
