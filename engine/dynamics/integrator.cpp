@@ -40,23 +40,29 @@ Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
 }
 
-/// Potential energy of `external`, which is constant, but for a constant, and of the coupling: as the step keeps it.
-double potential(const RigidBody& body, const Loads& loads, double shadow_dt) {
-  double energy = shadow_energy(loads.external, body, shadow_dt);
+/// What the step keeps of the potential energies: the coupling's, which now pulls with `pull`, and the shadow of
+/// `external` (whose own potential is linear). `shadow_dt`: dt if the step is velocity-first, else 0.
+double potential(const RigidBody& body, const Loads& loads, const CouplingForce& pull, double shadow_dt) {
+  const double energy = shadow_energy(loads.external, body, shadow_dt);
   if (loads.coupling == nullptr) return energy;
-  const CouplingForce force = coupling_force(*loads.coupling, body, loads.target);
-  return energy + coupling_energy(*loads.coupling, force) + shadow_energy(force.spring, body, shadow_dt);
+  return energy + coupling_energy(*loads.coupling, pull) + shadow_energy(pull.spring, body, shadow_dt);
+}
+double potential_at_start(const RigidBody& body, const Loads& loads, double shadow_dt) {
+  return potential(body, loads, loads.coupling_at_start, shadow_dt);
+}
+double potential_at_end(const RigidBody& body, const Loads& loads, double shadow_dt) {
+  if (loads.coupling == nullptr) return potential(body, loads, {}, shadow_dt);
+  return potential(body, loads, coupling_force(*loads.coupling, body, loads.target), shadow_dt);
 }
 
-/// Works of the loads, given the wrenches that were really applied. `energy_before`: their potential() at the start.
-/// `shadow_dt`: dt if the step is velocity-first, else 0.
+/// Works of the loads, given the wrenches that were really applied. `energy_before`: their potential_at_start().
 StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion, const Wrench& spring,
                  const Wrench& damper, const Wrench& contact, double energy_before, double dt, double shadow_dt) {
   StepWork work;
   const Vector6d half_way = dt * motion.middle;
   work.contact = contact;
   work.contact_work = stacked(contact).dot(half_way);
-  const double stored = potential(body, loads, shadow_dt) - energy_before;
+  const double stored = potential_at_end(body, loads, shadow_dt) - energy_before;
   work.numerical = motion.turned + stacked(loads.external).dot(dt * motion.during - half_way) - stored;
   if (loads.coupling == nullptr) return work;
 
@@ -69,11 +75,11 @@ StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion
   return work;
 }
 
-/// The share of the contact `f` that may act: 1, or the least at which its work meets the budget. `once`: u0 + u_free.
-/// Below the budget's parabola the share is 1 without a rounding, so that what needs no limit keeps its bits.
-double share_within(double budget, const Vector6d& f, const Vector6d& once, const Vector6d& du, double dt) {
+/// The share of the contact `f` that may act: 1, without a rounding, or that at which its work a s^2 + b s meets the
+/// budget. `velocities`: u0 + u_free.
+double share_within(double budget, const Vector6d& f, const Vector6d& velocities, const Vector6d& du, double dt) {
   const double a = 0.5 * dt * f.dot(du);
-  const double b = 0.5 * dt * f.dot(once);
+  const double b = 0.5 * dt * f.dot(velocities);
   if (!(a + b > budget)) return 1;
   if (!(a > 0)) return 0;
   return std::clamp((std::sqrt(b * b + 4 * a * budget) - b) / (2 * a), 0.0, 1.0);
@@ -82,7 +88,7 @@ double share_within(double budget, const Vector6d& f, const Vector6d& once, cons
 }  // namespace
 
 StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
-  const double energy_before = potential(body, loads, dt);
+  const double energy_before = potential_at_start(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
   const Wrench damper =
       loads.coupling == nullptr ? Wrench{} : damper_and_clutch(*loads.coupling, spring, loads.coupling_at_start.damper);
@@ -175,7 +181,7 @@ ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt
 
 StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
                       const Wrench& solved, double dt) {
-  const double energy_before = potential(body, loads, 0);
+  const double energy_before = potential_at_start(body, loads, 0);
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Wrench contact = solved;
   if (step.with_contact) contact += wrench_of(contact_at_end(body, loads, u1, dt));

@@ -3,12 +3,12 @@
 //   kinetic + coupling + gravity + dissipated + contact + numerical = input + (their sum at the start)
 //
 // kinetic, coupling (springs of the virtual couplings) and gravity are computed from the state, the latter two as the
-// integrator keeps them (shadow_energy in integrator.hpp); dissipated (couplings'
-// dampers and clutches), contact (given to contacts: stored in penalty springs and lost in their dampers and in the
-// steps between voxels) and input (hand) are works: force times dt times the mean of the velocities before and after,
-// which is exactly what a force does to kinetic energy. `numerical` is what the time discretization lost: a potential's
-// force times that mean displacement against the change of the potential along the real one, and the turning of I at
-// constant angular momentum. What is left over is rounding: `residual`.
+// integrator keeps them (shadow_energy in integrator.hpp); dissipated (couplings' dampers and clutches), contact (given
+// to contacts: stored in penalty springs and lost in their dampers and in the steps between voxels) and input (hand)
+// are works: force times dt times the mean of the velocities before and after, which is exactly what a force does to
+// kinetic energy. `numerical` is what the time discretization lost: a potential's force times that mean displacement
+// against the change of the potential, as kept, along the real one, and the turning of I at constant angular momentum.
+// What is left over is rounding: `residual`.
 #pragma once
 
 #include "engine/dynamics/integrator.hpp"
