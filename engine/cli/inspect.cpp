@@ -45,7 +45,7 @@ VoxelStatistics voxel_statistics(const Part& part, double voxel_size) {
   if (part.has_brep()) {
     const AssociationReport report = associate(part.name, part, {}, body);
     v.feature_sets = body.features.sets.size() - 1;
-    v.memory_bytes = body.features.sets.memory_bytes();
+    v.memory_bytes = body.features.sets.memory_bytes() + body.slot_sets.capacity() * sizeof(FeatureSetId);
     if (report.stand_ins > 0)
       v.notes.push_back(
           fmt::format("{} of its surface voxels are touched by its triangles only, not by the faces; a "

@@ -6,6 +6,7 @@
 #include "engine/voxel/edge_cells.hpp"
 #include "engine/voxel/parallel.hpp"
 #include "engine/voxel/prepared_faces.hpp"
+#include "engine/voxel/slot_sets.hpp"
 #include "engine/voxel/surface.hpp"
 #include "engine/voxel/voxelize.hpp"
 
@@ -344,12 +345,14 @@ AssociationReport associate(const std::string& name, const Part& part, const Ass
   body.shell.features.assign(body.voxmap.surface_count, 0);
   const AssociationReport report = part.has_brep() ? associate_part(part, options.threads, body)
                                                    : AssociationReport{.without = body.voxmap.surface_count};
-  if (options.declared == nullptr || options.declared->of_voxel().empty()) return report;
-  const std::vector<FeatureSetId>& declared = options.declared->of_voxel();
-  VERISIM_ASSERT(declared.size() == body.shell.features.size());
-  for (std::size_t i = 0; i < declared.size(); ++i) {
-    if (declared[i] != 0) body.shell.features[i] = declared[i];
+  if (options.declared != nullptr && !options.declared->of_voxel().empty()) {
+    const std::vector<FeatureSetId>& declared = options.declared->of_voxel();
+    VERISIM_ASSERT(declared.size() == body.shell.features.size());
+    for (std::size_t i = 0; i < declared.size(); ++i) {
+      if (declared[i] != 0) body.shell.features[i] = declared[i];
+    }
   }
+  body.slot_sets = sets_by_slot(body.voxmap, body.shell.features, body.features.sets, options.threads);
   return report;
 }
 

@@ -38,12 +38,10 @@ struct AssociationReport {
 AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
                             VoxelBody& body);
 
-/// The set of the voxel at `slot` (block * 512 + cell, as contacts name it); 0 where it is no surface voxel or nothing
-/// is associated. A few ns.
+/// The set of the voxel at `slot` (block * 512 + cell, as contacts name it), behind the surface that of the surface
+/// voxel in front (slot_sets.hpp); 0 outside, or where nothing is associated.
 [[nodiscard]] inline FeatureSetId feature_at(const VoxelBody& body, std::uint32_t slot) {
-  const std::int64_t number = surface_number_of_slot(body.voxmap, slot);
-  return number < 0 || body.shell.features.empty() ? FeatureSetId{0}
-                                                   : body.shell.features[static_cast<std::size_t>(number)];
+  return body.slot_sets.empty() ? FeatureSetId{0} : body.slot_sets[slot];
 }
 
 /// The set of the voxel that a pointshell point stands for; 0 where nothing is associated.

@@ -96,7 +96,8 @@ struct Pointshell {                    //  shape  unit  meaning
 struct VoxelBody {
   Voxmap voxmap;
   Pointshell shell;
-  BodyFeatures features;  ///< what shell.features refers to; empty unless association.hpp has filled it
+  BodyFeatures features;                ///< what shell.features refers to; empty unless association.hpp has filled it
+  std::vector<FeatureSetId> slot_sets;  ///< (blocks,512): see slot_sets.hpp; empty likewise
 };
 
 }  // namespace verisim

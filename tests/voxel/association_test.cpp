@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/voxel/slot_sets.hpp"
 #include "engine/voxel/voxelize.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/support/refusal.hpp"
@@ -70,7 +71,9 @@ TEST(Association, OfAVoxelIsFoundByItsSlotAndByItsPoint) {
   for (std::uint32_t slot = 0; slot < body.voxmap.layers.size(); ++slot) {
     const std::int64_t number = surface_number_of_slot(body.voxmap, slot);
     if (number < 0) {
-      ASSERT_EQ(feature_at(body, slot), 0);
+      if (body.voxmap.layers[slot] > 0) {
+        ASSERT_EQ(feature_at(body, slot), 0);
+      }
       continue;
     }
     ASSERT_EQ(number, found++);
@@ -78,6 +81,59 @@ TEST(Association, OfAVoxelIsFoundByItsSlotAndByItsPoint) {
     ASSERT_EQ(feature_of_point(body.shell, static_cast<std::uint32_t>(number)), feature_at(body, slot));
   }
   EXPECT_EQ(found, body.voxmap.surface_count);
+}
+
+/// The set of a voxel by its cell, without bricks.
+FeatureSetId set_of_cell(const VoxelBody& body, const Eigen::Vector3i& c) {
+  const Voxmap& map = body.voxmap;
+  const Eigen::Vector3i b = c / kBrickSide;
+  const auto brick = static_cast<std::size_t>((b.z() * map.bricks.y() + b.y()) * map.bricks.x() + b.x());
+  const auto cell = static_cast<std::uint32_t>(c.x() % 8 + 8 * (c.y() % 8) + 64 * (c.z() % 8));
+  return feature_at(body, map.brick_block[brick] * kBrickCells + cell);
+}
+
+/// By the plain definition in slot_sets.hpp: the sets of the neighbours one layer nearer to the surface, by distance.
+FeatureSetId plainly_inherited(const VoxelBody& body, const Eigen::Vector3i& cell) {
+  std::array<std::vector<FeatureSetId>, 4> by_distance;
+  std::vector<FeatureSetId> all;
+  for (int away = 1; away <= 3; ++away)
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const Eigen::Vector3i there = cell + Eigen::Vector3i(x, y, z);
+          if (x * x + y * y + z * z != away || body.voxmap.layer(there) != body.voxmap.layer(cell) + 1) continue;
+          by_distance[static_cast<std::size_t>(away)].push_back(set_of_cell(body, there));
+          all.push_back(set_of_cell(body, there));
+        }
+  for (const std::vector<FeatureSetId>& nearest : by_distance) {
+    if (nearest.empty()) continue;
+    if (std::ranges::count(nearest, nearest.front()) == std::ssize(nearest)) return nearest.front();
+    return *std::ranges::max_element(all, {}, [&](FeatureSetId id) { return body.features.sets[id].size(); });
+  }
+  return 0;
+}
+
+TEST(Association, BehindTheSurfaceIsThatOfTheSurfaceInFront) {
+  const VoxelBody body = associated(drilled_block(), 0.0013, {.threads = 3});
+  const Voxmap& map = body.voxmap;
+  std::array<std::size_t, kInheritedLayers + 1> checked{};
+  for (int z = 0; z < 8 * map.bricks.z(); ++z)
+    for (int y = 0; y < 8 * map.bricks.y(); ++y)
+      for (int x = 0; x < 8 * map.bricks.x(); ++x) {
+        const Eigen::Vector3i cell(x, y, z);
+        const Layer layer = map.layer(cell);
+        if (layer < -kInheritedLayers) {
+          ASSERT_EQ(set_of_cell(body, cell), 0);
+        }
+        if (layer > 0 || layer < -kInheritedLayers) continue;
+        const FeatureSetId expected = layer < 0
+                                          ? plainly_inherited(body, cell)
+                                          : body.shell.features[static_cast<std::size_t>(map.surface_number(cell))];
+        ASSERT_EQ(set_of_cell(body, cell), expected) << cell.transpose();
+        ASSERT_NE(expected, 0);
+        ++checked[static_cast<std::size_t>(-layer)];
+      }
+  for (const std::size_t cells : checked) EXPECT_GT(cells, 0U);
 }
 
 TEST(Association, RefusesMoreSetsThanAllowedAndNamesThePart) {
