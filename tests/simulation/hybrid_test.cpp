@@ -110,17 +110,19 @@ Scene coaxial_pin(Hybrid hybrid, double turn) {
 // ORACLES section 2, "Free spin": the error of the voxels, what restoration leaves of it (rounding of single
 // precision), and what precise surfaces say. Every contact counts: one of ten has its point behind the surface voxels.
 TEST(Hybrid, OfACoaxialPinNothingTurnsIt) {
-  for (const double turn : {0.2, 0.35, 1.2}) {
+  double worst_off = 0, worst_restored = 0;
+  for (const double turn : {0.2, 0.35, 0.8, 1.2}) {
     SCOPED_TRACE(turn);
-    const Frame off = frame_of(coaxial_pin(Hybrid::off, turn));
     const Frame restore = frame_of(coaxial_pin(Hybrid::restore, turn));
     const Frame exact = frame_of(coaxial_pin(Hybrid::exact, turn));
-    EXPECT_GT(std::abs(off.torque.z()), 0.5);
+    worst_off = std::max(worst_off, std::abs(frame_of(coaxial_pin(Hybrid::off, turn)).torque.z()));
+    worst_restored = std::max(worst_restored, std::abs(restore.torque.z()));
     EXPECT_EQ(restore.constraint(), ConstraintKind::cylindrical);
-    EXPECT_LE(std::abs(restore.torque.z()), 1e-6 * std::abs(off.torque.z()));
     EXPECT_EQ(exact.torque, Vector3d::Zero());
     EXPECT_EQ(exact.force, Vector3d::Zero());
   }
+  EXPECT_GT(worst_off, 1);
+  EXPECT_LE(worst_restored, 1e-6 * worst_off);
 }
 
 TEST(Hybrid, OfAPairIsTheLesserMethodOfTheTwo) {
