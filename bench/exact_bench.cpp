@@ -1,8 +1,9 @@
 // What the exact response costs a frame (search and solution) in the driven insertion of
 // ../shared/reference/peers/README.md, at each clearance; beside it the plain voxmap loop of plain_loop.hpp on the same
-// number of frames, the unit in which that page's own figures are given (22.9 us there).
+// number of frames, the unit in which that page's own figures are given (22.9 us there). And with a taper that lies
+// flush in its seat, where every sample of both touches.
 //
-// The insertion is run again and again; each frame keeps its best time of all rounds (pose_times.hpp says why), so that
+// The task is run again and again; each frame keeps its best time of all rounds (pose_times.hpp says why), so that
 // medians and percentiles are over frames.
 #include <benchmark/benchmark.h>
 
@@ -13,46 +14,57 @@
 #include "bench/plain_loop.hpp"
 #include "bench/pose_times.hpp"
 #include "tests/exact/driven_insertion.hpp"
+#include "tests/exact/seated_cone.hpp"
 
 namespace verisim::bench {
 namespace {
 
+using exact::test::HeldBody;
 using exact::test::Insertion;
 using exact::test::Start;
 
-/// Frames of one insertion with what contact costs in each.
+/// Frames of one task with what contact costs in each.
 struct FrameTimes {
   std::vector<double> best;  ///< us
-  double rows = 0, samples = 0;
+  double rows = 0, samples = 0, slides = 0;
   int iterations_max = 0;
-  double overlap_max = 0;  ///< m
 
   [[nodiscard]] double percentile(double share) const {
     std::vector<double> sorted = best;
     std::sort(sorted.begin(), sorted.end());
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))];
   }
+  void report(benchmark::State& state) const {
+    state.counters["median_us"] = percentile(0.5);
+    state.counters["p99_us"] = percentile(0.99);
+    state.counters["rows"] = rows;
+    state.counters["samples"] = samples;
+    state.counters["slides"] = slides;
+    state.counters["iterations_max"] = iterations_max;
+  }
 };
 
-void play(const Insertion& task, bool is_first, FrameTimes& times) {
+/// Runs a task of `steps` frames; `each(held)` is called after every one of its first run.
+template <typename Body, typename HandAt, typename Each>
+void play(Body held, HandAt&& hand_at, int steps, FrameTimes& times, Each&& each) {
   using Clock = std::chrono::steady_clock;
-  exact::test::HeldPin pin = exact::test::pin_for(task);
-  const int steps = exact::test::steps_of(task);
+  const bool is_first = times.best.empty();
   times.best.resize(static_cast<std::size_t>(steps), std::numeric_limits<double>::infinity());
   for (int i = 0; i < steps; ++i) {
     Matrix6d M;
     Vector6d u0;
-    pin.pull(exact::test::hand_at(task, i * pin.dt), M, u0);
+    held.pull(hand_at(i * held.dt), M, u0);
     const auto start = Clock::now();
-    pin.contact(M, u0);
+    held.contact(M, u0);
     double& best = times.best[static_cast<std::size_t>(i)];
     best = std::min(best, std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-    pin.move();
+    held.move();
     if (!is_first) continue;
-    times.rows += static_cast<double>(pin.link.rows().rows().size()) / steps;
-    times.samples += static_cast<double>(pin.link.cost().samples) / steps;
-    times.iterations_max = std::max(times.iterations_max, pin.iterations);
-    times.overlap_max = std::max(times.overlap_max, pin.overlap());
+    times.rows += static_cast<double>(held.link.rows().rows().size()) / steps;
+    times.samples += static_cast<double>(held.link.cost().samples) / steps;
+    times.slides += static_cast<double>(held.link.cost().slides) / steps;
+    times.iterations_max = std::max(times.iterations_max, held.iterations);
+    each(held);
   }
 }
 
@@ -76,23 +88,35 @@ void BM_DrivenInsertion(benchmark::State& state) {
     task.chamfer = 0.002;
   }
   FrameTimes times;
-  bool is_first = true;
+  double overlap_max = 0;
   for (auto _ : state) {
-    play(task, is_first, times);
-    is_first = false;
+    play(
+        exact::test::pin_for(task), [&](double t) { return exact::test::hand_at(task, t); },
+        exact::test::steps_of(task), times,
+        [&](const exact::test::HeldPin& pin) { overlap_max = std::max(overlap_max, pin.overlap()); });
   }
-  state.counters["median_us"] = times.percentile(0.5);
-  state.counters["p99_us"] = times.percentile(0.99);
+  times.report(state);
   state.counters["plain_voxmap_loop_us"] = plain_loop_us();
-  state.counters["rows"] = times.rows;
-  state.counters["samples"] = times.samples;
-  state.counters["iterations_max"] = times.iterations_max;
   if (task.chamfer > 0) return;  // the closed form of the overlap is that of a sharp hole
-  state.counters["overlap_share"] = times.overlap_max / task.clearance;
-  if (times.overlap_max > 0.025 * task.clearance) state.SkipWithError("deeper than 2.5 % of the clearance");
+  state.counters["overlap_share"] = overlap_max / task.clearance;
+  if (overlap_max > 0.025 * task.clearance) state.SkipWithError("deeper than 2.5 % of the clearance");
 }
 BENCHMARK(BM_DrivenInsertion)
     ->ArgsProduct({{1000, 100, 20, 10}, {0, 1}})
+    ->Iterations(std::getenv("VERISIM_BENCH_SMOKE") != nullptr ? 1 : 7)
+    ->Unit(benchmark::kMillisecond);
+
+/// Argument: how much wider the seat is than the taper [um].
+void BM_SeatedCone(benchmark::State& state) {
+  FrameTimes times;
+  for (auto _ : state)
+    play(exact::test::seated_cone(1e-6 * static_cast<double>(state.range(0))), exact::test::hand_over_seat,
+         exact::test::kSeatSteps, times, [](const HeldBody&) {});
+  times.report(state);
+}
+BENCHMARK(BM_SeatedCone)
+    ->Arg(0)
+    ->Arg(10)
     ->Iterations(std::getenv("VERISIM_BENCH_SMOKE") != nullptr ? 1 : 7)
     ->Unit(benchmark::kMillisecond);
 

@@ -10,6 +10,8 @@
 //   - before anything touches, the face that would be passed last within the step decides, so that a pin that enters a
 //     hole beside its rim does not stumble over the plane around it; where it lies on one of them and slides, its last
 //     velocity says which that is;
+//   - where bodies lie flush most samples are near a face that decides nothing there, because the face across an edge
+//     does or because it looks the wrong way: these are told a run at a time and not tried one by one;
 //   - a place that cannot be the nearest because the faces there look the wrong way counts less and less, and not at
 //     all from 40 degrees on.
 // Every row appears with a gap of the margin or more and so without force.

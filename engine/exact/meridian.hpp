@@ -27,7 +27,7 @@ struct Measure {
 
 /// At one place, c and s as in ExactBody::sample_c. `kKind`: sphere and torus are one kind.
 template <PreciseSurface::Kind kKind, bool kIsArc>
-inline Measure measure(const CurveFromSurface& f, double c, double s) {
+[[gnu::always_inline]] inline Measure measure(const CurveFromSurface& f, double c, double s) {
   // X, Y, Z: the place; T: first, B: second derivative.
   const double X = f.origin.x() + c * f.x.x() + s * f.y.x();
   const double Y = f.origin.y() + c * f.x.y() + s * f.y.y();

@@ -41,6 +41,29 @@ struct Candidate {
   double weight = 1;      ///< less where the place is not the mover's boundary
 };
 
+/// By which motion the one of two faces at a convex edge is told that decides at a place. Free: the one that will be
+/// passed last. A place that lies on one of them slides along that one and does not stumble over the other; what it
+/// would do without contact says nothing there, but how it moved before does.
+enum class Rule : std::uint8_t { as_is, as_free, as_before };
+Rule rule_of(double a, double b) {
+  if (a >= 0 && b >= 0) return Rule::as_free;
+  return std::max(a, b) >= 0 && std::min(a, b) > -kFlush ? Rule::as_before : Rule::as_is;
+}
+
+/// One number for each sample of a run.
+using OfRun = std::array<double, kRun>;
+
+/// A run against one face, at its segments' middles.
+struct Sight {
+  OfRun distance, change;  ///< m, as in Measure
+};
+
+/// By how much the face across an edge is farther away than this one, which then does not decide.
+struct Lead {
+  OfRun now, by_rule;  ///< m
+  std::array<Rule, kRun> rule;
+};
+
 std::uint32_t across(const ExactEdge& edge, std::uint32_t face) {
   return edge.faces[0] == face ? edge.faces[1] : edge.faces[0];
 }
@@ -84,11 +107,20 @@ class Search {
 
  private:
   void meet(std::uint32_t run, std::uint32_t face);
+  void hide_beyond_an_edge(const PlacedFeature& placed, const Run& run, std::uint32_t face, const Sight& mine,
+                           std::span<double> ahead) const;
+  [[nodiscard]] Lead lead_of(const PreciseSurface& other, const PreciseSurface& mine, const PlacedFeature& placed,
+                             const Run& run, const Sight& sight) const;
+  [[nodiscard]] const ExactEdge* hiding_edge(const Vector3d& p, std::uint32_t face) const;
+  [[nodiscard]] bool is_hidden_by(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance) const;
+  template <typename F>
+  void measure_all(const CurveFromSurface& curve, const Run& run, F&& f) const;
   void meet_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                   std::span<double> ahead, std::uint32_t face);
-  [[nodiscard]] CurveFromSurface seen_from(const PreciseSurface& surface, const PlacedFeature& placed) const {
-    return exact::seen_from(surface, placed.origin, placed.x, placed.y, placed.is_arc(), f_.dt * f_.twist.linear,
-                            f_.dt * f_.twist.angular);
+  [[nodiscard]] CurveFromSurface seen_from(const PreciseSurface& surface, const PlacedFeature& placed,
+                                           const Twist& twist) const {
+    return exact::seen_from(surface, placed.origin, placed.x, placed.y, placed.is_arc(), f_.dt * twist.linear,
+                            f_.dt * twist.angular);
   }
   [[nodiscard]] Vector3d moved(const Vector3d& p, const Twist& twist) const {
     return f_.dt * (twist.linear + twist.angular.cross(p));
@@ -99,7 +131,9 @@ class Search {
                                 Candidate& c) const;
   [[nodiscard]] bool is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t other) const;
   [[nodiscard]] bool decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) const;
+  [[nodiscard]] bool looks_away(const Run& run, const Vector3d& normal) const;
   [[nodiscard]] double lean_weight(std::uint32_t sample, const Vector3d& normal) const;
+  [[nodiscard]] double lean_weight_in_mover(std::uint32_t sample, const Vector3d& n) const;
   [[nodiscard]] static double touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count);
   void add(const Candidate& c, const Feature& feature, double weight, std::uint32_t count, std::uint32_t face);
 
@@ -140,30 +174,125 @@ double Search::run(NodePairs& stack) {
   return depth_max_;
 }
 
+/// Calls f(i, its measure) for every sample of the run.
+template <typename F>
+void Search::measure_all(const CurveFromSurface& curve, const Run& run, F&& f) const {
+  const double* c = &mover_.sample_c[run.begin];
+  const double* s = &mover_.sample_s[run.begin];
+  const std::uint32_t count = run.end - run.begin;
+  with_measure(curve, [&](auto&& measure_at) {
+    for (std::uint32_t i = 0; i < count; ++i) f(i, measure_at(c[i], s[i]));
+  });
+}
+
 void Search::meet(std::uint32_t r, std::uint32_t face) {
   const Run& run = mover_.runs[r];
   const Feature& feature = mover_.features[run.feature];
   const PreciseSurface& surface = *base_.faces[face].surface;
   if (feature.against_round_only && !surface.is_convex()) return;
+  if (surface.kind() == PreciseSurface::Kind::plane && looks_away(run, surface.axis())) return;
   const PlacedFeature placed{&feature, f_.R * feature.origin + f_.p, f_.R * feature.x, f_.R * feature.y};
-  const CurveFromSurface curve = seen_from(surface, placed);
+  const CurveFromSurface curve = seen_from(surface, placed, f_.twist);
   const std::uint32_t count = run.end - run.begin;
-  std::array<double, kRun> nearest;
-  std::array<double, kRun> ahead;
-  const double* c = &mover_.sample_c[run.begin];
-  const double* s = &mover_.sample_s[run.begin];
-  with_measure(curve, [&](auto&& measure_at) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Measure m = measure_at(c[i], s[i]);
-      nearest[i] = nearest_of(m, feature.half_width) - feature.radius;
-      ahead[i] = nearest[i] + m.change;
-    }
+  Sight sight;
+  OfRun ahead;  // m, estimate of how near at the end of the step; kNever: out of reach
+  bool any = false;
+  measure_all(curve, run, [&](std::uint32_t i, const Measure& m) {
+    const double nearest = nearest_of(m, feature.half_width) - feature.radius;
+    sight.distance[i] = m.distance;
+    sight.change[i] = m.change;
+    ahead[i] = nearest < f_.margin ? nearest + m.change : kNever;
+    any = any || nearest < f_.margin;
   });
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (!(nearest[i] < f_.margin)) ahead[i] = kNever;
   cost_.samples += count;
-  for (std::uint32_t i = 0; i < count; i += feature.group)
-    meet_group(placed, curve, run.begin + i, std::span(ahead).subspan(i, std::min(feature.group, count - i)), face);
+  if (!any) return;
+  if (feature.own_face == kNoFace && count > 1) hide_beyond_an_edge(placed, run, face, sight, ahead);
+  for (std::uint32_t i = 0; i < count; i += feature.group) {
+    const std::uint32_t size = std::min(feature.group, count - i);
+    meet_group(placed, curve, run.begin + i, std::span(ahead).subspan(i, size), face);
+  }
+}
+
+/// A convex edge of the face beyond which a place near the face lies, if there is one.
+const ExactEdge* Search::hiding_edge(const Vector3d& p, std::uint32_t face) const {
+  const SurfaceAt mine = base_.faces[face].surface->at(p);
+  const Trim::Answer answer = base_.faces[face].trim->find(*base_.faces[face].surface, p - mine.distance * mine.normal);
+  for (const std::uint32_t e : answer.edges) {
+    const ExactEdge& edge = base_.edges[e];
+    if (edge.fold != Fold::convex) continue;
+    const SurfaceAt other = base_.faces[across(edge, face)].surface->at(p);
+    if (edge.speaks_for(p, other.distance) && !decides(p, mine, other, false)) return &edge;
+  }
+  return nullptr;
+}
+
+/// Is the edge one of those near a place of the face, and does it speak for it?
+bool Search::is_hidden_by(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance) const {
+  const auto number = static_cast<std::uint32_t>(&edge - base_.edges.data());
+  const Trim::Answer answer = base_.faces[face].trim->find(*base_.faces[face].surface, p);
+  return std::find(answer.edges.begin(), answer.edges.end(), number) != answer.edges.end() &&
+         edge.speaks_for(p, distance);
+}
+
+Lead Search::lead_of(const PreciseSurface& other, const PreciseSurface& mine, const PlacedFeature& placed,
+                     const Run& run, const Sight& sight) const {
+  Lead lead;
+  bool some_before = false;
+  bool some_free = false;
+  measure_all(seen_from(other, placed, f_.before), run, [&](std::uint32_t i, const Measure& m) {
+    lead.now[i] = m.distance - sight.distance[i];
+    lead.rule[i] = rule_of(sight.distance[i], m.distance);
+    lead.by_rule[i] = lead.now[i] + (lead.rule[i] == Rule::as_before ? m.change : 0);
+    some_before = some_before || lead.rule[i] == Rule::as_before;
+    some_free = some_free || lead.rule[i] == Rule::as_free;
+  });
+  if (some_before) {
+    measure_all(seen_from(mine, placed, f_.before), run, [&](std::uint32_t i, const Measure& m) {
+      if (lead.rule[i] == Rule::as_before) lead.by_rule[i] -= m.change;
+    });
+  }
+  if (some_free) {
+    measure_all(seen_from(other, placed, f_.twist), run, [&](std::uint32_t i, const Measure& m) {
+      if (lead.rule[i] == Rule::as_free) lead.by_rule[i] += m.change - sight.change[i];
+    });
+  }
+  return lead;
+}
+
+/// Takes out the samples that the face across a convex edge hides: what `admit` would find of them one by one,
+/// here a group at a time. Where
+/// two bodies lie flush these are most of those that are near.
+void Search::hide_beyond_an_edge(const PlacedFeature& placed, const Run& run, std::uint32_t face, const Sight& sight,
+                                 std::span<double> ahead) const {
+  const std::uint32_t count = run.end - run.begin;
+  const auto place = [&](std::uint32_t i) {
+    return placed.point({0, mover_.sample_c[run.begin + i], mover_.sample_s[run.begin + i]});
+  };
+  std::uint32_t first = 0;
+  while (first < count && ahead[first] == kNever) ++first;
+  if (first == count) return;
+  const ExactEdge* edge = hiding_edge(place(first), face);
+  if (edge == nullptr) return;
+  const Lead lead = lead_of(*base_.faces[across(*edge, face)].surface, *base_.faces[face].surface, placed, run, sight);
+  // From a segment's middle to its end the lead changes by half of what it does to the next middle: twice that is
+  // asked.
+  const auto leads_to = [&](std::uint32_t i, std::uint32_t next) {
+    return lead.rule[next] == lead.rule[i] && lead.now[i] > std::abs(lead.now[i] - lead.now[next]) &&
+           lead.by_rule[i] > std::abs(lead.by_rule[i] - lead.by_rule[next]);
+  };
+  const auto leads = [&](std::uint32_t i) {
+    return ahead[i] == kNever || ((i == 0 || leads_to(i, i - 1)) && (i + 1 == count || leads_to(i, i + 1)));
+  };
+  const auto speaks = [&](std::uint32_t i) {
+    return ahead[i] == kNever || is_hidden_by(*edge, face, place(i), sight.distance[i] + lead.now[i]);
+  };
+  const std::uint32_t group = placed.feature->group;
+  for (std::uint32_t begin = first / group * group; begin < count; begin += group) {
+    const std::uint32_t end = std::min(begin + group, count);
+    bool is_hidden = speaks(begin) && speaks(end - 1);
+    for (std::uint32_t i = begin; is_hidden && i < end; ++i) is_hidden = leads(i);
+    if (is_hidden) std::fill(ahead.begin() + begin, ahead.begin() + end, kNever);
+  }
 }
 
 /// One row for that of a group's samples, of those that are near enough and that the face admits, which will be nearest
@@ -207,7 +336,7 @@ double Search::touching_share(const PlacedFeature& placed, const Candidate& c, s
 }
 
 Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& placed, std::uint32_t sample) const {
-  return slide(seen_from(surface, placed), mover_.sample_c[sample], mover_.sample_s[sample],
+  return slide(seen_from(surface, placed, f_.twist), mover_.sample_c[sample], mover_.sample_s[sample],
                placed.feature->half_width);
 }
 
@@ -215,11 +344,9 @@ Place Search::slide_to(const PreciseSurface& surface, const PlacedFeature& place
 bool Search::decides(const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) const {
   double a = mine.distance;
   double b = other.distance;
-  // Free: the one that will be passed last. A place that lies on one of them slides along that one and does not stumble
-  // over the other; what it would do without contact says nothing there.
-  const bool is_free = a >= 0 && b >= 0;
-  if (is_free || (std::max(a, b) >= 0 && std::min(a, b) > -kFlush)) {
-    const Vector3d way = moved(p, is_free ? f_.twist : f_.before);
+  const Rule rule = rule_of(a, b);
+  if (rule != Rule::as_is) {
+    const Vector3d way = moved(p, rule == Rule::as_free ? f_.twist : f_.before);
     a += mine.normal.dot(way);
     b += other.normal.dot(way);
   }
@@ -312,11 +439,23 @@ bool Search::is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t 
 }
 
 double Search::lean_weight(std::uint32_t sample, const Vector3d& normal) const {
-  const Vector3d n = f_.R.transpose() * normal;
+  return lean_weight_in_mover(sample, f_.R.transpose() * normal);
+}
+
+/// @param n  the normal in the mover's coordinates
+double Search::lean_weight_in_mover(std::uint32_t sample, const Vector3d& n) const {
   double lean = 0;
   for (std::uint32_t i = mover_.wedge_begin[sample]; i < mover_.wedge_begin[sample + 1]; ++i)
     lean = std::max(lean, -n.dot(mover_.wedges[i]));
   return std::clamp((kLeanNone - lean) / (kLeanNone - kLeanFree), 0.0, 1.0);
+}
+
+/// Does a plane look the wrong way for all of a run?
+bool Search::looks_away(const Run& run, const Vector3d& normal) const {
+  const Vector3d n = f_.R.transpose() * normal;
+  for (std::uint32_t i = run.begin; i < run.end; ++i)
+    if (lean_weight_in_mover(i, n) > 0) return false;
+  return true;
 }
 
 void Search::add(const Candidate& c, const Feature& feature, double weight, std::uint32_t count, std::uint32_t face) {

@@ -1,4 +1,4 @@
-// A pin of 1 kg that a hand holds through a virtual coupling, and a block that stands: the set-up of
+// A body that a hand holds through a virtual coupling, and another that stands: the set-up of
 // ../shared/reference/peers/README.md ("Driven insertion"), the coupling linearly implicit and saturated as there.
 #pragma once
 
@@ -11,20 +11,20 @@
 namespace verisim::exact::test {
 
 struct Hand {
-  Vector3d position;  ///< where it wants the pin's centre [m]
+  Vector3d position;  ///< where it wants the body's centre of mass [m]
   Quaterniond rotation;
   Vector3d velocity;
 };
 
-struct HeldPin {
-  std::shared_ptr<const ExactBody> block, pin;
-  double radius;
+struct HeldBody {
+  double mass;         ///< kg
+  Vector3d inertia_B;  ///< kg m^2, about its axes
   double stiffness = 5000, angular_stiffness = 50;
-  double damping = 2 * std::sqrt(5000.0);
+  double damping = 2 * std::sqrt(stiffness * mass);
   double force_max = 100, torque_max = 5;
   double dt = 0.001;
   double margin = 0.0002, speed = 0.2;  ///< candidates: as near as margin + dt speed
-  Pose X_WB;
+  Pose X_WB;                            ///< of the centre of mass
   Vector3d v = Vector3d::Zero(), omega = Vector3d::Zero();
 
   ExactLink link;
@@ -36,28 +36,20 @@ struct HeldPin {
   Wrench coupling;
   int iterations = 0;
 
-  HeldPin(double clearance, double chamfer, double spacing, const LoadOptions& load = {})
-      : block(body_of(block_solid(chamfer), spacing, load)),
-        pin(body_of(pin_solid(clearance), spacing, load)),
-        radius(kHoleRadius - clearance),
-        link(block, pin) {}
-
-  [[nodiscard]] Matrix3d inertia_B() const {
-    const double across = (3 * radius * radius + kPinLength * kPinLength) / 12;
-    return Vector3d(across, across, 0.5 * radius * radius).asDiagonal();
-  }
+  HeldBody(std::shared_ptr<const ExactBody> standing, std::shared_ptr<const ExactBody> held, double mass_,
+           const Vector3d& inertia)
+      : mass(mass_), inertia_B(inertia), link(std::move(standing), std::move(held)) {}
 
   /// The velocity without contact and the matrix of the convex problem.
   void pull(const Hand& hand, Matrix6d& M, Vector6d& u0) {
     const Matrix3d R = X_WB.rotation.toRotationMatrix();
-    const Matrix3d I = R * inertia_B() * R.transpose();
-    const Matrix3d B =
-        R * Matrix3d((2 * (angular_stiffness * inertia_B().diagonal()).cwiseSqrt()).asDiagonal()) * R.transpose();
+    const Matrix3d I = R * inertia_B.asDiagonal() * R.transpose();
+    const Matrix3d B = R * Matrix3d((2 * (angular_stiffness * inertia_B).cwiseSqrt()).asDiagonal()) * R.transpose();
     Vector3d force = stiffness * (hand.position - X_WB.position - dt * v) + damping * (hand.velocity - v);
     const Vector3d e = vector_from_rotation(hand.rotation * X_WB.rotation.conjugate());
     Vector3d torque = angular_stiffness * (e - dt * omega) - B * omega;
     M.setZero();
-    M.topLeftCorner<3, 3>().setIdentity();
+    M.topLeftCorner<3, 3>().diagonal().setConstant(mass);
     M.bottomRightCorner<3, 3>() = I;
     if (force.norm() > force_max) {
       force *= force_max / force.norm();
@@ -79,9 +71,9 @@ struct HeldPin {
 
   /// Everything that `exact` costs in a frame: search and solution.
   void contact(const Matrix6d& M, const Vector6d& u0) {
-    const BodyMotion block_motion;
-    const BodyMotion pin_motion{X_WB, X_WB.position, {u0.head<3>(), u0.tail<3>()}, {v, omega}};
-    link.find(block_motion, pin_motion, dt, margin + dt * speed);
+    const BodyMotion standing;
+    const BodyMotion held{X_WB, X_WB.position, {u0.head<3>(), u0.tail<3>()}, {v, omega}};
+    link.find(standing, held, dt, margin + dt * speed);
     solver.clear();
     const int body = solver.add_body(X_WB.position, M, u0, last);
     solver.add_rows(link.rows().rows(), kFixed, body);
@@ -103,6 +95,21 @@ struct HeldPin {
     pull(hand, M, u0);
     contact(M, u0);
     move();
+  }
+};
+
+/// A pin of 1 kg in a block.
+struct HeldPin : HeldBody {
+  double radius;
+
+  HeldPin(double clearance, double chamfer, double spacing, const LoadOptions& load = {})
+      : HeldBody(body_of(block_solid(chamfer), spacing, load), body_of(pin_solid(clearance), spacing, load), 1,
+                 inertia(kHoleRadius - clearance)),
+        radius(kHoleRadius - clearance) {}
+
+  static Vector3d inertia(double radius) {
+    const double across = (3 * radius * radius + kPinLength * kPinLength) / 12;
+    return {across, across, 0.5 * radius * radius};
   }
 
   /// Deepest true overlap of the pin's side with the hole [m], from closed forms at many angles: the pin's ends against
