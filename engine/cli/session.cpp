@@ -30,8 +30,13 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
       notices.push_back("device '" + device->name() +
                         "' is driven by nothing and stays at its home pose; --bind drives it");
   session.simulation = std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads});
+  const auto warn = [&](const std::string& text) {
+    if (!quiet) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  };
+  for (const Event& event : session.simulation->events())
+    if (event.kind == "hybrid") warn(event.text);  // a method that was asked for and cannot act on a pair
   for (const std::string& notice : notices) {
-    if (!quiet) std::fprintf(stderr, "warning: %s\n", notice.c_str());
+    warn(notice);
     session.simulation->add_event("warning", notice);
   }
   session.scenario->attach(*session.simulation);

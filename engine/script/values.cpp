@@ -94,8 +94,8 @@ std::string suggestion(const std::string& name, std::vector<std::string> known) 
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   const std::string nearest = nearest_name(name, known);
-  return fmt::format("{} ({})", nearest.empty() ? ";" : fmt::format("; did you mean '{}'?", nearest),
-                     fmt::join(known, ", "));
+  if (nearest.empty()) return fmt::format("; known: {}", fmt::join(known, ", "));
+  return fmt::format("; did you mean '{}'? ({})", nearest, fmt::join(known, ", "));
 }
 
 Fields::Fields(lua_State* L, int index, std::string word) : L_(L), index_(index), word_(std::move(word)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
@@ -14,10 +15,9 @@ constexpr double kUnitLength = 1e-9;  // a direction's length may differ from on
 
 /// What an entity is made of, in one shape for all kinds.
 struct Numbers {
-  std::size_t kind = 0;
+  int kind = 0;
   Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
   double first = 1, second = 1;  // lengths or angles that must be above zero
-  bool operator==(const Numbers&) const = default;
 };
 
 struct NumbersOf {
@@ -33,15 +33,12 @@ struct NumbersOf {
   Numbers operator()(const OtherCurve&) const { return {9}; }
 };
 
-Numbers numbers_of(const Face& face) {
-  return std::visit(NumbersOf{}, face.surface);
-}
-Numbers numbers_of(const Edge& edge) {
-  return std::visit(NumbersOf{}, edge.curve);
+Numbers numbers_of(const DeclaredFeatures::Entity& entity) {
+  if (const auto* edge = std::get_if<Edge>(&entity)) return std::visit(NumbersOf{}, edge->curve);
+  return std::visit(NumbersOf{}, std::get<Face>(entity).surface);
 }
 
-void check(const std::string& owner, const DeclaredFeatures::Entity& entity) {
-  const Numbers n = std::visit([](const auto& e) { return numbers_of(e); }, entity);
+void check(const std::string& owner, const Numbers& n) {
   if (!n.point.allFinite() || !n.direction.allFinite() || !std::isfinite(n.first + n.second)) {
     fail(ErrorKind::input, "'{}': a declared entity has a number that is not finite; give all of its fields", owner);
   }
@@ -55,39 +52,36 @@ void check(const std::string& owner, const DeclaredFeatures::Entity& entity) {
   }
 }
 
-template <class Item>
-std::uint32_t found_or_added(std::vector<Item>& items, const Item& item) {
-  const auto equal = [&](const Item& other) { return numbers_of(other) == numbers_of(item); };
-  const auto known = std::ranges::find_if(items, equal);
-  if (known != items.end()) return static_cast<std::uint32_t>(known - items.begin());
-  items.push_back(item);
-  return static_cast<std::uint32_t>(items.size() - 1);
-}
-
 }  // namespace
 
-DeclaredFeatures::Place DeclaredFeatures::place_of(const Entity& entity) {
-  if (const auto* edge = std::get_if<Edge>(&entity)) return 2 * found_or_added(edges_, *edge) + 1;
-  const std::uint32_t index = found_or_added(faces_, std::get<Face>(entity));
-  met_.resize(faces_.size(), false);
-  lean_.resize(faces_.size(), 0);
-  return 2 * index;
+DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, const Entity& entity) {
+  const Numbers n = numbers_of(entity);
+  check(owner, n);
+  const bool is_edge = std::holds_alternative<Edge>(entity);
+  const auto next = static_cast<Place>(is_edge ? 2 * edges_.size() + 1 : 2 * faces_.size());
+  const Key key = {static_cast<double>(n.kind), n.point.x(),     n.point.y(), n.point.z(), n.direction.x(),
+                   n.direction.y(),             n.direction.z(), n.first,     n.second};
+  const auto [found, is_new] = places_.try_emplace(key, next);
+  if (!is_new) return found->second;
+  if (is_edge) {
+    edges_.push_back(std::get<Edge>(entity));
+  } else {
+    faces_.push_back(std::get<Face>(entity));
+    met_.push_back(false);
+    lean_.push_back(0);
+  }
+  return next;
 }
 
 FeatureSetId DeclaredFeatures::add(const std::string& owner, std::span<const Entity> set) {
-  if (set.empty()) return 0;
-  for (const Entity& entity : set) check(owner, entity);
   std::vector<Place> places;
-  for (const Entity& entity : set) places.push_back(place_of(entity));
+  for (const Entity& entity : set) places.push_back(place_of(owner, entity));
   std::ranges::sort(places);
   places.erase(std::unique(places.begin(), places.end()), places.end());
-  const auto known = std::ranges::find(sets_, places);
-  if (known != sets_.end()) return static_cast<FeatureSetId>(known - sets_.begin() + 1);
-  if (sets_.size() == FeatureSets::kMostSets) {
+  if (const std::optional<FeatureSetId> known = sets_.find(places)) return *known;
+  if (size() == FeatureSets::kMostSets)
     fail(ErrorKind::input, "'{}': more than {} different sets are declared; use fewer", owner, FeatureSets::kMostSets);
-  }
-  sets_.push_back(std::move(places));
-  return static_cast<FeatureSetId>(sets_.size());
+  return sets_.intern(places);
 }
 
 /// Adds a voxel's say about whether the face is a hole. A voxel where faces meet says little or the contrary.
@@ -135,13 +129,13 @@ void DeclaredFeatures::extend(std::size_t face, const Vector3d& p, double half_s
 }
 
 void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, FeatureSetId id) {
-  VERISIM_ASSERT(voxel < body.voxmap.surface_count && id <= sets_.size() && body.shell.voxel.empty());
+  VERISIM_ASSERT(voxel < body.voxmap.surface_count && id <= size() && body.shell.voxel.empty());
   if (of_voxel_.empty()) of_voxel_.assign(body.voxmap.surface_count, 0);
   of_voxel_[voxel] = id;
   if (id == 0) return;
   const Pointshell& shell = body.shell;
   const Vector3d p = shell.reference + Vector3d(shell.x[voxel], shell.y[voxel], shell.z[voxel]);
-  for (const Place place : sets_[id - std::size_t{1}]) {
+  for (const Place place : sets_[id]) {
     if (place % 2 != 0) continue;
     const std::size_t face = place / 2;
     weigh(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
@@ -153,7 +147,7 @@ void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, Featur
 std::vector<EntityNumber> DeclaredFeatures::numbered(FeatureSetId id, EntityNumber first_face,
                                                      EntityNumber first_edge) const {
   std::vector<EntityNumber> entities;
-  for (const Place place : sets_[id - std::size_t{1}]) {
+  for (const Place place : sets_[id]) {
     entities.push_back(place % 2 == 0 ? first_face + place / 2 : first_edge + place / 2);
   }
   std::ranges::sort(entities);

@@ -9,6 +9,8 @@
 // plane's normal is as declared: out of the material.) A face's bounds are those of the voxels that have it.
 #pragma once
 
+#include <array>
+#include <map>
 #include <span>
 #include <variant>
 #include <vector>
@@ -31,11 +33,9 @@ class DeclaredFeatures {
   /// @pre body is the one that all calls are about, and voxel is below its surface_count
   void assign(const VoxelBody& body, std::uint32_t voxel, FeatureSetId id);
 
-  [[nodiscard]] std::size_t size() const { return sets_.size(); }
+  [[nodiscard]] std::size_t size() const { return sets_.size() - 1; }
   /// Number of entities in a set; 0 for the empty set. @pre id <= size()
-  [[nodiscard]] std::size_t entities_in(FeatureSetId id) const {
-    return id == 0 ? 0 : sets_[id - std::size_t{1}].size();
-  }
+  [[nodiscard]] std::size_t entities_in(FeatureSetId id) const { return sets_[id].size(); }
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
   /// Sets of the surface voxels; empty, or as long as the body's surface_count.
@@ -47,9 +47,11 @@ class DeclaredFeatures {
 
  private:
   /// Faces are 2 i, edges 2 i + 1.
-  using Place = std::uint32_t;
+  using Place = EntityNumber;
+  /// Kind, point, direction and two sizes: entities are equal if these are.
+  using Key = std::array<double, 9>;
 
-  [[nodiscard]] Place place_of(const Entity& entity);
+  [[nodiscard]] Place place_of(const std::string& owner, const Entity& entity);
   void weigh(std::size_t face, const Vector3d& p, const Vector3d& inward);
   void extend(std::size_t face, const Vector3d& p, double half_side);
 
@@ -57,7 +59,8 @@ class DeclaredFeatures {
   std::vector<bool> met_;     // a voxel has the face
   std::vector<double> lean_;  // sum over its voxels: above zero where the inward normals point away from the axis
   std::vector<Edge> edges_;
-  std::vector<std::vector<Place>> sets_;
+  std::map<Key, Place> places_;
+  FeatureSets sets_;  // of places
   std::vector<FeatureSetId> of_voxel_;
 };
 

@@ -36,6 +36,11 @@ std::size_t FeatureSets::place_of(std::span<const EntityNumber> entities) const 
   return place;
 }
 
+std::optional<FeatureSetId> FeatureSets::find(std::span<const EntityNumber> entities) const {
+  const FeatureSetId id = entities.empty() ? FeatureSetId{0} : table_[place_of(entities)];
+  return entities.empty() || id != 0 ? std::optional(id) : std::nullopt;
+}
+
 FeatureSetId FeatureSets::intern(std::span<const EntityNumber> entities) {
   if (entities.empty()) return 0;
   VERISIM_ASSERT(std::ranges::adjacent_find(entities, std::ranges::greater_equal{}) == entities.end());

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class FeatureSets {
   /// Throws Error(input) that names the owner if there are more sets than may be stored: never a wrap-around.
   /// @pre entities ascend, none twice
   FeatureSetId intern(std::span<const EntityNumber> entities);
+
+  /// The number that intern() would give without storing anything; none if it would be a new one.
+  [[nodiscard]] std::optional<FeatureSetId> find(std::span<const EntityNumber> entities) const;
 
   /// Entities of a set, ascending. Valid until the next intern().
   /// @pre id < size()

@@ -1,6 +1,6 @@
 // The association against the CAD kernel, voxel by voxel: an entity is in a voxel's set exactly if the kernel's own
 // distance between the voxel's box and the entity is zero. The kernel takes milliseconds a distance, so a sample of the
-// voxels is asked; VERISIM_LONG=1 asks fifty times as many.
+// voxels is asked; VERISIM_LONG_TESTS=1 asks fifty times as many.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -105,7 +105,7 @@ const std::vector<Case> kFiles = {
 };
 
 bool is_long() {
-  return std::getenv("VERISIM_LONG") != nullptr;
+  return std::getenv("VERISIM_LONG_TESTS") != nullptr;
 }
 
 bool is_by_triangles(const Part& part, EntityNumber entity) {
