@@ -12,8 +12,9 @@
 // them: up to four, and on an arc those within half a radian, beyond which they push in different directions.
 //
 // Stiffness: an edge is a line of springs with `line_stiffness` per metre, a point counts as `point_length` of it. So
-// the sum over samples tends to an integral over the line as the spacing shrinks. The default is that of steel in line
-// contact (half of E / (1 - nu^2) = 2.3e11 N/m^2).
+// the sum over samples tends to an integral over the line as the spacing shrinks. The default is that of steel on steel
+// (half of E / (1 - nu^2) = 2.3e11 N/m^2); it is what leaves an overlap of 1 % of a clearance of 0.01 mm where a lean
+// of half a degree presses a pin of 150 mm into both rims of its hole with 250 N.
 #pragma once
 
 #include <optional>
@@ -27,9 +28,9 @@
 namespace verisim::exact {
 
 struct BodyOptions {
-  double spacing = 0;            ///< m, > 0: longest segment; usually the voxel size
-  double line_stiffness = 1e11;  ///< N/m per m
-  double point_length = 0.004;   ///< m
+  double spacing = 0;               ///< m, > 0: longest segment; usually the voxel size
+  double line_stiffness = 1.15e11;  ///< N/m per m
+  double point_length = 0.004;      ///< m
 };
 
 /// How the material lies at an edge.
