@@ -19,6 +19,12 @@ local limits = require "iso286"
 local hole_low, hole_high, shaft_low, shaft_high = limits(p.fit, p.nominal)
 local share = ({loosest = 1, mid = 0.5, tightest = 0})[p.size]
 if not share then error("size is '" .. p.size .. "'; it is one of loosest, mid, tightest") end
+for word, most in pairs{chamfer = p.nominal / 2, error = p.nominal / 2, tilt = deg(20), tremor = p.nominal / 2} do
+  if not (p[word] >= 0 and p[word] <= most) then
+    error(string.format("%s is %g; for this nominal it lies between 0 and %g", word, p[word], most))
+  end
+end
+if not (p.speed > 0) then error(string.format("speed is %g; it must be above 0", p.speed)) end
 local hole = (p.nominal + hole_low + share * (hole_high - hole_low)) / 2      -- radius
 local shaft = (p.nominal + shaft_high - share * (shaft_high - shaft_low)) / 2  -- radius
 local height, length = 1.5 * p.nominal, 2 * p.nominal

@@ -5,7 +5,7 @@ import unittest
 
 import h5py
 
-from program import ProgramTest, SMALL
+from program import ProgramTest, SMALL, SOURCE
 
 
 def scene(body):
@@ -84,6 +84,36 @@ class BadScenarios(ProgramTest):
     def test_two_objects_of_one_name(self):
         box = "Solid.box{0.1, 0.1, 0.1}"
         self.refuse_script("'it'", scene(box) + "\n" + scene(box))
+
+
+class BadParameters(ProgramTest):
+    """Of the shipped scenarios: each names what it was given and what there is instead."""
+
+    def refuse_parameter(self, words, name, *settings):
+        options = [word for setting in settings for word in ("--set", setting)]
+        scenario = os.path.join(SOURCE, "scenarios", name + ".lua")
+        self.refuse(3, words, "run", scenario, "-o", self.path("x.h5"), *options)
+
+    def test_methods_that_do_not_exist(self):
+        for name in ("peg_in_hole", "iso_fit", "assembly", "pins", "seats", "slide", "stack"):
+            self.refuse_parameter(["'foo'", "blend, exact, off, restore"], name, "hybrid=foo")
+
+    def test_fits_and_sizes_outside_the_table(self):
+        for fit in ("H7/zz9", "H7", "g6/H7", "H99/g6", "H7/g99"):
+            self.refuse_parameter([f"fit is '{fit}'", "as in H7/g6"], "iso_fit", "fit=" + fit)
+        for nominal in ("0", "-0.025", "0.0029", "0.1201"):
+            self.refuse_parameter(["nominal is", "3 to 120 mm"], "iso_fit", "nominal=" + nominal)
+        for nominal in ("0/0", "1/0", "thick"):
+            self.refuse_parameter("nominal", "iso_fit", "nominal=" + nominal)
+        self.refuse_parameter(["'huge'", "loosest, mid, tightest"], "iso_fit", "size=huge")
+
+    def test_hands_and_leads_that_make_no_sense(self):
+        for setting in ("chamfer=-0.001", "chamfer=0.02", "error=0/0", "error=1", "tilt=2", "tremor=-1", "speed=0"):
+            self.refuse_parameter(setting.split("=")[0], "iso_fit", setting)
+
+    def test_kinds_that_do_not_exist(self):
+        self.refuse_parameter(["'wedge'", "cone, ball, socket"], "seats", "kind=wedge")
+        self.refuse_parameter(["'bent'", "fitting, angled, spaced, single"], "pins", "kind=bent")
 
 
 class BadModels(ProgramTest):

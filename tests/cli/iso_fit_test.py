@@ -40,6 +40,18 @@ class IsoFit(ProgramTest):
         return [(seed, nominal, fit, size) for nominal in NOMINALS for fit in fits for size in sizes
                 for seed in range(1, SEEDS + 1)]
 
+    def test_limits_are_those_of_iso_286(self):
+        """Largest and least clearance [um, on the diameter] as tables of fits print them; less than 0: interference."""
+        for nominal, fit, largest, least in [(3, "H7/g6", 18, 2), (10, "H7/p6", 0, -24), (18, "H8/f7", 61, 16),
+                                             (25, "H7/g6", 41, 7), (50, "H7/h6", 41, 0), (50, "H8/k8", 39, -39),
+                                             (65, "H7/r6", -11, -60), (75, "H8/f7", 106, 30), (100, "H7/n6", 12, -45), (120, "H7/s6", -44, -101)]:
+            for size, want in (("loosest", largest), ("tightest", least), ("mid", 0.5 * (largest + least))):
+                pairs = {"nominal": f"mm({nominal})", "fit": fit, "size": size, "duration": 0.03}
+                options = [word for key, value in pairs.items() for word in ("--set", f"{key}={value}")]
+                summary = self.run_json("run", os.path.join(SOURCE, "scenarios", "iso_fit.lua"), "-o",
+                                        self.path("run.h5"), *options)
+                self.assertAlmostEqual(2e6 * summary["measures"]["clearance"]["value"], want, places=6, msg=str(pairs))
+
     def test_clearance_goes_together_in_every_trial(self):
         for seed, nominal, fit, size in self.trials(["H7/g6", "H8/f7"], ["loosest", "mid", "tightest"]):
             with self.subTest(nominal=nominal, fit=fit, size=size, seed=seed):

@@ -31,6 +31,28 @@ class PreciseScenes(ProgramTest):
                 with self.subTest(kind=kind, clearance=clearance):
                     self.assertEqual(self.outcome("seats", kind=kind, clearance=f"mm({clearance})", jump=5), "seated")
 
+    def test_a_coaxial_pin_feels_none_of_what_its_voxels_make_up(self):
+        """Free spin (ORACLES section 2), in one scene under both: turned against the grid, 50 um of clearance."""
+        scenario = self.write("coaxial.lua", """
+            local p = params{ hybrid = "off", height = 0.05 }
+            defineSimulationParameters{ hybrid = p.hybrid, integrator = "implicit", duration = 0.001,
+                                        allBodiesAreDynamic = true }
+            addObject{ name = "block", fixed = true, voxelsize = mm(4.5), density = 7800,
+                       Solid.box{0.375, 0.375, 0.2} - Solid.cylinder{radius = mm(75), height = 0.2} }
+            addObject{ name = "pin", voxelsize = mm(4.5), density = 7800, position = {0, 0, p.height},
+                       orientation = AngleAxis(deg(20), Axis{0, 0, 1}),
+                       Solid.cylinder{radius = mm(74.95), height = 0.4} }""")
+        felt = {}
+        for hybrid, height in (("off", 0.05), ("off", 0.201), ("exact", 0.05), ("exact", 0.201)):
+            self.succeed("run", scenario, "-o", self.path("run.h5"), "--set", f"hybrid={hybrid}", "--set",
+                         f"height={height}")
+            with h5py.File(self.path("run.h5")) as f:
+                wrench = f["state/link/block~pin/wrench"][0]
+            felt[hybrid] = numpy.maximum(felt.get(hybrid, 0), numpy.abs(wrench[[2, 5]]))  # along and about the axis
+        self.assertGreater(felt["off"][0], 1, "N; off feels nothing either: this would prove nothing")
+        self.assertGreater(felt["off"][1], 1, "N m")
+        self.assertTrue((felt["exact"] <= 1e-6 * felt["off"]).all(), felt)
+
     # The plate weighs 25 g: two of its pins that snap into their holes at 1 m/s are stopped with 25 N.
     def test_pins_that_fit_go_in_without_a_jump(self):
         for seed in SEEDS:

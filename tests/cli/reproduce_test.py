@@ -55,6 +55,15 @@ class Reproduce(ProgramTest):
             # An empty block between two frames is no long period of either.
             self.assertLess(run["/timing/period_ns"][1:].max(), 0.9e9)
 
+    def test_r2_restored_the_operator_passes_every_two_seconds(self):
+        report, _ = self.reproduce("--only", "R2")
+        off, restore, ratio = report["rows"]
+        self.assertEqual([row["published"] for row in report["rows"]], [3 / 28, 5 / 10, 14 / 3])
+        self.assertGreaterEqual(restore["here"], 0.5)
+        self.assertAlmostEqual(ratio["here"], restore["here"] / off["here"], places=9)
+        self.assertLessEqual(ratio["interval_95"][0], ratio["here"])
+        self.assertGreaterEqual(ratio["interval_95"][1], ratio["here"])
+
     def test_r3_has_more_collisions_than_published_and_counts_every_miss(self):
         report, _ = self.reproduce("--only", "R3")
         collisions, misses, none, found = [row["here"] for row in report["rows"]]
