@@ -1,6 +1,7 @@
 #include "engine/geometry/recover.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
@@ -30,6 +31,17 @@ std::size_t effort(const std::vector<recover::Region>& regions) {
   return words;
 }
 
+/// Do most of the triangles that are not on planes lie on round surfaces? Vertices of less precision would not.
+bool are_mostly_round(const recover::CanonicalMesh& mesh, const std::vector<recover::Region>& regions) {
+  double round = 0, other = 0;
+  for (const recover::Region& region : regions) {
+    if (std::holds_alternative<Plane>(region.surface)) continue;
+    double& sum = std::holds_alternative<OtherSurface>(region.surface) ? other : round;
+    for (const std::uint32_t t : region.triangles) sum += mesh.areas[t];
+  }
+  return round >= other;
+}
+
 struct Explanation {
   std::vector<recover::Region> regions;
   double tolerance = 0;
@@ -41,8 +53,9 @@ Explanation explained(const recover::CanonicalMesh& mesh, double extent) {
   Explanation best;
   for (const double usual : kUsualTolerances) {
     Explanation next{recover::find_regions(mesh, usual * extent), usual * extent};
+    if (std::getenv("V")) fmt::print("  tolerance {} regions {} effort {}\n", usual*extent, next.regions.size(), effort(next.regions));
     if (best.tolerance == 0 || 2 * effort(next.regions) < effort(best.regions)) best = std::move(next);
-    if (effort(best.regions) == best.regions.size()) break;  // nothing is left to explain
+    if (are_mostly_round(mesh, best.regions)) break;
   }
   return best;
 }

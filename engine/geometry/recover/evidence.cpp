@@ -1,6 +1,7 @@
 #include "engine/geometry/recover/evidence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "engine/base/pinned_math.hpp"
@@ -11,6 +12,7 @@ namespace verisim::recover {
 namespace {
 
 constexpr std::size_t kEnough = 5;
+constexpr std::array<std::size_t, 5> kFewest = {3, 8, 8, 9, 14};
 constexpr double kEqualStep = 0.02;  // relative
 constexpr double kBulge = 50;        // tolerances off the nearest plane: what is flatter fits anything
 constexpr double kFullTurn = 2 * pinned::kPi;
@@ -53,6 +55,8 @@ bool make_a_circle(const std::vector<double>& angles, double apart) {
 
 bool is_evident(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance) {
   if (s.kind == Kind::plane) return true;
+  if (s.kind == Kind::torus && std::abs(s.a) < kBulge * tolerance) return false;  // a sphere, about any axis
+  if (points.size() < kFewest[static_cast<std::size_t>(s.kind)]) return false;
   const SurfaceValue flat = plane_through(points);
   const bool bulges =
       std::ranges::any_of(points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > kBulge * tolerance; });

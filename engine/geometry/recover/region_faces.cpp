@@ -146,9 +146,11 @@ class Bounds {
   }
   void operator()(Torus& s) const {
     set_around(face_, s, s.center, mesh_, region_);
+    const double side = is_beyond_axis(s) ? -1 : 1;
+    if (side < 0) s.x_axis = -s.x_axis;
     const Range turn = turn_of(mesh_, region_, [&](const Vector3d& p, double& angle) {
       const Profile f = profile_of(p, s.center, s.direction);
-      angle = pinned::atan2(f.height, f.rho - s.major_radius);
+      angle = pinned::atan2(f.height, side * f.rho - s.major_radius);
       return true;
     });
     face_.v_range = is_whole(turn) ? Range{0, kFullTurn} : turn;
@@ -158,6 +160,18 @@ class Bounds {
  private:
   [[nodiscard]] Range heights(const Vector3d& point, const Vector3d& axis) const {
     return range_of(points_, [&](const Vector3d& p) { return (p - point).dot(axis); });
+  }
+
+  /// A tube wider than its ring passes the axis: do these points belong to the tube on the other side?
+  [[nodiscard]] bool is_beyond_axis(const Torus& s) const {
+    double here = 0, beyond = 0;
+    for (const Vector3d& p : points_) {
+      const Profile f = profile_of(p, s.center, s.direction);
+      const auto distance = [&](double rho) { return std::abs(std::hypot(rho - s.major_radius, f.height) - s.minor_radius); };
+      here += distance(f.rho);
+      beyond += distance(-f.rho);
+    }
+    return beyond < here;
   }
 
   Face& face_;

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 
 #include "engine/geometry/recover/evidence.hpp"
 #include "engine/geometry/recover/facets.hpp"
 #include "engine/geometry/recover/flat_regions.hpp"
+#include "engine/geometry/recover/piece.hpp"
 #include "engine/geometry/recover/surface_fit.hpp"
 
 namespace verisim::recover {
@@ -16,8 +18,7 @@ namespace verisim::recover {
 namespace {
 
 constexpr Kind kRoundKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
-constexpr double kMostSagitta = 0.045;  // of the radius: the middle of a chord of 34 degrees
-constexpr double kAlongNormal = 0.9;    // cosine: a triangle's normal against the surface's at its middle
+constexpr double kCosStep = 0.824;  // 34.5
 constexpr double kLargerByFar = 1.001;  // in area, for a kind that is less simple
 constexpr int kGrowings = 8;
 constexpr std::array<std::size_t, 4> kAround = {2, 3, 6, 12};  // steps
@@ -25,6 +26,8 @@ constexpr std::size_t kAgain = 3;                              // steps from wha
 constexpr int kSteps = 4;                                      // facets of a row to each side
 constexpr double kNarrower = 0.25;  // of a plane's width: a neighbour that curves away from it
 constexpr std::size_t kFewFacets = 4;
+constexpr double kSnug = 0.5;
+constexpr std::size_t kFan = 2;  // triangles of a facet
 constexpr double kMostlySharp = 0.6;  // of a border
 
 struct Candidate {
@@ -39,6 +42,7 @@ class Search {
       : mesh_(mesh),
         tolerance_(tolerance),
         facets_(facets_of(mesh, tolerance)),
+        region_of_(mesh.triangles.size(), kNone),
         taken_(mesh.triangles.size(), false),
         taken_of_facet_(facets_.all.size(), 0),
         untried_(facets_.all.size(), true),
@@ -46,18 +50,35 @@ class Search {
         mark_(mesh.triangles.size(), 0) {}
 
   std::vector<Region> run() {
-    bool found = true;
-    while (found) {
-      found = false;
-      for (std::uint32_t facet = 0; facet < facets_.all.size(); ++facet) {
-        if (untried_[facet] && is_free(facet)) found |= try_from(facet);
-      }
+    while (take_round() || take_small_planes()) {
     }
+    give_to_larger();
     take_rest();
     return std::move(regions_);
   }
 
  private:
+  /// Round surfaces, and planes of many triangles, as long as there are any.
+  bool take_round() {
+    bool found = false;
+    for (std::uint32_t facet = 0; facet < facets_.all.size(); ++facet) {
+      if (untried_[facet] && is_free(facet)) found |= try_from(facet);
+    }
+    return found;
+  }
+
+  /// A facet of a triangle or two that borders as a plane may still have belonged to a round surface beside it.
+  bool take_small_planes() {
+    bool found = false;
+    for (std::uint32_t facet = 0; facet < facets_.all.size(); ++facet) {
+      if (!is_free(facet) || !borders_as_a_plane(facet)) continue;
+      take_plane(facet);
+      try_again_beside(regions_.back().triangles);
+      found = true;
+    }
+    return found;
+  }
+
   [[nodiscard]] bool is_free(std::uint32_t facet) const { return taken_of_facet_[facet] == 0; }
 
   /// Everything that is free and smoothly joined to a facet, up to `most` steps away. Ascending.
@@ -121,6 +142,9 @@ class Search {
       row.erase(std::unique(row.begin(), row.end()), row.end());
       result.push_back(std::move(row));
     }
+    std::vector<std::uint32_t> both;
+    std::ranges::set_union(result[0], result[1], std::back_inserter(both));
+    result.push_back(std::move(both));
     return result;
   }
 
@@ -154,27 +178,15 @@ class Search {
     return points_of(std::move(vertices));
   }
 
-  [[nodiscard]] bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points) const {
-    return std::ranges::all_of(points, [&](const Vector3d& p) { return std::abs(s.distance(p)) <= tolerance_; });
-  }
-
-  /// Does the triangle stand for a piece of the surface, the material on the side where `inside_out` says?
-  [[nodiscard]] bool stands_for(std::uint32_t t, const SurfaceValue& s, bool inside_out) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (std::abs(s.distance(mesh_.corner(t, i))) > tolerance_) return false;
-    }
-    const Vector3d& middle = mesh_.centers[t];
-    if (std::abs(s.distance(middle)) > kMostSagitta * s.radius_near(middle) + tolerance_) return false;
-    if (mesh_.heights[t] <= kSliver * tolerance_) return true;
-    const double along = s.gradient(middle).dot(mesh_.normals[t]);
-    return (inside_out ? -along : along) > kAlongNormal;
+  [[nodiscard]] bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points, double within) const {
+    return std::ranges::all_of(points, [&](const Vector3d& p) { return std::abs(s.distance(p)) <= within; });
   }
 
   /// Free triangles, joined to the seed, that stand for the surface. Ascending.
   std::vector<std::uint32_t> grow(const SurfaceValue& s, std::uint32_t seed) {
-    const bool inside_out = s.gradient(mesh_.centers[seed]).dot(mesh_.normals[seed]) < 0;
     std::vector<std::uint32_t> found;
-    if (!stands_for(seed, s, inside_out)) return found;
+    const Piece piece = piece_of(s, seed);
+    if (!piece.is_regular(seed)) return found;
     ++growing_;
     found.push_back(seed);
     mark_[seed] = growing_;
@@ -182,7 +194,7 @@ class Search {
       for (const std::uint32_t t : mesh_.neighbors[found[i]]) {
         if (t == kNone || mark_[t] == growing_ || taken_[t]) continue;
         mark_[t] = growing_;
-        if (stands_for(t, s, inside_out)) found.push_back(t);
+        if (piece.is_regular(t)) found.push_back(t);
       }
     }
     std::ranges::sort(found);
@@ -190,19 +202,20 @@ class Search {
   }
 
   std::optional<Candidate> candidate(Kind kind, const Sample& sample, std::uint32_t seed) {
-    std::optional<SurfaceValue> surface = fit(kind, sample);
-    if (!surface || !passes_through(*surface, sample.points)) return std::nullopt;
+    std::optional<SurfaceValue> surface = fit(kind, sample, tolerance_);
+    if (!surface || !passes_through(*surface, sample.points, tolerance_)) return std::nullopt;
     Candidate best;
     for (int i = 0; i < kGrowings; ++i) {
       std::vector<std::uint32_t> triangles = grow(*surface, seed);
       if (triangles.size() <= best.triangles.size()) break;
       best = {*surface, std::move(triangles)};
-      surface = refit(*surface, points_of_triangles(best.triangles));
+      surface = refit(*surface, points_of_triangles(best.triangles), tolerance_);
       if (!surface) break;
     }
     if (best.triangles.empty()) return std::nullopt;
     const std::vector<Vector3d> points = points_of_triangles(best.triangles);
-    if (surface && passes_through(*surface, points)) best.surface = *surface;
+    if (surface && passes_through(*surface, points, tolerance_)) best.surface = *surface;
+    if (!passes_through(best.surface, points, kSnug * tolerance_)) return std::nullopt;
     if (!is_evident(best.surface, points, tolerance_)) return std::nullopt;
     for (const std::uint32_t t : best.triangles) best.area += mesh_.areas[t];
     return best;
@@ -229,14 +242,40 @@ class Search {
         if (next && (!best || next->area > kLargerByFar * best->area)) best = std::move(next);
       }
     }
-    if (best)
+    if (best) {
+      add_fans(*best);
       take(*best);
-    else if (borders_as_a_plane(facet))
+    }
+    else if (facets_.all[facet].triangles.size() > kFan && borders_as_a_plane(facet))
       take_plane(facet);
     else
       return pass_by(facet);
     try_again_beside(regions_.back().triangles);
     return true;
+  }
+
+  /// What is not regular beside a surface found, but can be a piece of it and is no face by itself.
+  void add_fans(Candidate& found) {
+    const Piece piece = piece_of(found.surface, found.triangles.front());
+    ++growing_;
+    for (const std::uint32_t t : found.triangles) mark_[t] = growing_;
+    for (std::size_t i = 0; i < found.triangles.size(); ++i) {
+      for (const std::uint32_t t : mesh_.neighbors[found.triangles[i]]) {
+        if (t == kNone || mark_[t] == growing_ || taken_[t]) continue;
+        mark_[t] = growing_;
+        if (is_fan(t) && piece.is_possible(t)) found.triangles.push_back(t);
+      }
+    }
+    std::ranges::sort(found.triangles);
+  }
+
+  [[nodiscard]] bool is_fan(std::uint32_t t) const {
+    return facets_.all[facets_.of_triangle[t]].triangles.size() <= kFan;
+  }
+
+  [[nodiscard]] Piece piece_of(const SurfaceValue& s, std::uint32_t seed) const {
+    const bool inside_out = s.gradient(mesh_.centers[seed]).dot(mesh_.normals[seed]) < 0;
+    return {mesh_, s, tolerance_, kCosStep, inside_out};
   }
 
   /// From beside a place where nothing fits little will.
@@ -286,14 +325,17 @@ class Search {
         },
         surface);
     take(std::move(surface), best.triangles);
+    values_.back() = best.surface;
   }
 
   void take(Surface surface, std::vector<std::uint32_t> triangles) {
     for (const std::uint32_t t : triangles) {
       taken_[t] = true;
+      region_of_[t] = static_cast<std::uint32_t>(regions_.size());
       ++taken_of_facet_[facets_.of_triangle[t]];
     }
     regions_.push_back({std::move(surface), std::move(triangles)});
+    values_.emplace_back();
   }
 
   /// Facets near what was taken last have other surroundings now.
@@ -352,10 +394,59 @@ class Search {
     return found;
   }
 
+  /// A strip of a tube can pass for a cylinder before the tube is found: what was taken and can be a piece of a larger
+  /// surface beside it is given to that, the larger before the smaller.
+  void give_to_larger() {
+    std::vector<double> areas;
+    for (const Region& region : regions_) {
+      areas.push_back(0);
+      for (const std::uint32_t t : region.triangles) areas.back() += mesh_.areas[t];
+    }
+    std::vector<std::uint32_t> order(regions_.size()), asked_by(regions_.size(), kNone);
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, std::greater<>{}, [&](std::uint32_t r) { return areas[r]; });
+    for (const std::uint32_t larger : order) {
+      if (values_[larger] && !regions_[larger].triangles.empty()) give_to(larger, areas, asked_by);
+    }
+    std::erase_if(regions_, [](const Region& region) { return region.triangles.empty(); });
+  }
+
+  void give_to(std::uint32_t larger, const std::vector<double>& areas, std::vector<std::uint32_t>& asked_by) {
+    std::vector<std::uint32_t>& triangles = regions_[larger].triangles;
+    const Piece piece = piece_of(*values_[larger], triangles.front());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (const std::uint32_t t : mesh_.neighbors[triangles[i]]) {
+        if (t == kNone || region_of_[t] == larger) continue;
+        if (!taken_[t]) {
+          if (!is_fan(t) || !piece.is_possible(t)) continue;
+          taken_[t] = true;
+          ++taken_of_facet_[facets_.of_triangle[t]];
+          region_of_[t] = larger;
+          triangles.push_back(t);
+          continue;
+        }
+        const std::uint32_t other = region_of_[t];
+        if (asked_by[other] == larger || areas[other] > areas[larger]) continue;
+        asked_by[other] = larger;
+        std::vector<std::uint32_t>& theirs = regions_[other].triangles;
+        const bool is_flat = std::holds_alternative<Plane>(regions_[other].surface);
+        const bool fits = std::ranges::all_of(
+            theirs, [&](std::uint32_t n) { return (!is_flat || is_fan(n)) && piece.is_possible(n); });
+        if (!fits) continue;
+        for (const std::uint32_t n : theirs) region_of_[n] = larger;
+        triangles.insert(triangles.end(), theirs.begin(), theirs.end());
+        theirs.clear();
+      }
+    }
+    std::ranges::sort(triangles);
+  }
+
   const CanonicalMesh& mesh_;
   double tolerance_;
   Facets facets_;
   std::vector<Region> regions_;
+  std::vector<std::optional<SurfaceValue>> values_;  // of regions, where round
+  std::vector<std::uint32_t> region_of_;             // triangles
   std::vector<bool> taken_;                    // triangles
   std::vector<std::uint32_t> taken_of_facet_;  // how many of its triangles
   std::vector<bool> untried_;                  // facets whose surroundings have changed since they were tried

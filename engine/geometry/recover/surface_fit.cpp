@@ -11,13 +11,14 @@ namespace {
 
 using Row = SurfaceValue::Row;
 
-constexpr int kIterations = 20;
+constexpr int kIterations = 40;
 constexpr double kMostDamping = 1e6;
 constexpr double kSmallestDamping = 1e-13;  // holds the directions in which a kind does not change
 constexpr std::size_t kPointsOfAFit = 64;
-constexpr int kFirst = 4;
-constexpr double kFast = 0.5;      // after the first iterations: what fits is there, or gets there fast
+constexpr int kFirst = 2;
+constexpr double kFast = 0.5;      // after the first iterations: what fits is near, or gets there fast
 constexpr double kSettled = 0.99;  // a step that lowers the cost by less is the last
+constexpr double kNear = 30, kFine = 1e-3;  // tolerances, root of the mean square
 constexpr double kSingular = 1e-12, kNearlySingular = 1e-9;
 constexpr double kNarrowestCone = 0.005, kWidestCone = 200;  // tangents of half angles
 constexpr double kLargestRadius = 1000;                      // sizes of the sample: beyond it is flat
@@ -33,7 +34,8 @@ double cost_of(const SurfaceValue& s, std::span<const Vector3d> points) {
   return cost;
 }
 
-SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points) {
+SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points, double tolerance) {
+  const double wanted = tolerance * tolerance * static_cast<double>(points.size());
   double cost = cost_of(s, points), damping = 1e-4;
   for (int i = 0; i < kIterations && cost > 0; ++i) {
     const Vector3d x = s.axis.unitOrthogonal(), y = s.axis.cross(x);
@@ -59,7 +61,8 @@ SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points) {
       }
       damping *= 10;
     }
-    if (!(cost < (i < kFirst ? kSettled : kFast) * cost_before)) break;
+    const bool is_slow_at_most = i < kFirst || cost < kNear * kNear * wanted;
+    if (cost < kFine * kFine * wanted || !(cost < (is_slow_at_most ? kSettled : kFast) * cost_before)) break;
   }
   return s;
 }
@@ -145,7 +148,7 @@ std::optional<SurfaceValue> guess_torus(const Sample& s) {
     profiles.emplace_back(f.rho, f.height);
   }
   const auto circle = circle_through(profiles);
-  if (!circle || !(circle->x() > 0)) return std::nullopt;
+  if (!circle) return std::nullopt;
   return SurfaceValue{Kind::torus, point + circle->y() * axis, axis, circle->x(), circle->z()};
 }
 
@@ -209,12 +212,13 @@ bool is_sound(const SurfaceValue& s) {
   if (!s.point.allFinite() || !s.axis.allFinite() || !std::isfinite(s.a + s.b)) return false;
   if (s.kind == Kind::plane) return true;
   if (s.kind == Kind::cone) return std::abs(s.b) > kNarrowestCone && std::abs(s.b) < kWidestCone;
-  if (!(s.a > 0 && s.a < kLargestRadius)) return false;
-  return s.kind != Kind::torus || (s.b > 0 && s.b < kLargestRadius);
+  if (s.kind == Kind::torus) return std::abs(s.a) < kLargestRadius && s.b > std::max(-s.a, 0.0) && s.b < kLargestRadius;
+  return s.a > 0 && s.a < kLargestRadius;
 }
 
-std::optional<SurfaceValue> result_of(SurfaceValue s, std::span<const Vector3d> points, const Frame& frame) {
-  s = refined(s, points);
+std::optional<SurfaceValue> result_of(SurfaceValue s, std::span<const Vector3d> points, const Frame& frame,
+                                      double tolerance) {
+  s = refined(s, points, tolerance / frame.size);
   settle(s);
   if (!is_sound(s)) return std::nullopt;
   return frame.out(s);
@@ -253,21 +257,21 @@ SurfaceValue plane_through(std::span<const Vector3d> points) {
   return SurfaceValue{Kind::plane, frame.center, smallest_axis(m)};
 }
 
-std::optional<SurfaceValue> fit(Kind kind, const Sample& sample) {
+std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance) {
   const Frame frame(sample.points);
   if (!(frame.size > 0)) return std::nullopt;
   const Sample scaled{frame.into(thinned(sample.points)), frame.into(sample.centers), sample.normals};
   const std::optional<SurfaceValue> start = guess(kind, scaled);
   if (!start) return std::nullopt;
-  return result_of(*start, scaled.points, frame);
+  return result_of(*start, scaled.points, frame, tolerance);
 }
 
-std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points) {
+std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points, double tolerance) {
   const Frame frame(points);
   if (!(frame.size > 0)) return std::nullopt;
   SurfaceValue start = frame.into(guess);
   settle(start);
-  return result_of(start, frame.into(points), frame);
+  return result_of(start, frame.into(points), frame, tolerance);
 }
 
 }  // namespace verisim::recover

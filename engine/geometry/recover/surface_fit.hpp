@@ -20,9 +20,10 @@ struct Sample {
 };
 
 /// The surface of this kind that is nearest to the points, however far that is; none if they do not determine one.
-[[nodiscard]] std::optional<SurfaceValue> fit(Kind kind, const Sample& sample);
+[[nodiscard]] std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance);
 /// The same from a first guess.
-[[nodiscard]] std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points);
+[[nodiscard]] std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points,
+                                                double tolerance);
 
 /// The circle nearest to points of a plane, algebraically: center and radius.
 [[nodiscard]] std::optional<Vector3d> circle_through(std::span<const Eigen::Vector2d> points);

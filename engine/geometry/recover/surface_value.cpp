@@ -66,7 +66,7 @@ Surface SurfaceValue::surface() const {
     case Kind::sphere:
       return Sphere{point, axis, x, a, false};
     case Kind::torus:
-      return Torus{point, axis, x, a, b, false};
+      return Torus{point, axis, x, std::abs(a), b, false};
   }
   return OtherSurface{};
 }
