@@ -49,10 +49,10 @@ struct Explanation {
 
 /// The explanation by the smallest tolerance, unless a larger one halves the effort: too small a tolerance breaks
 /// surfaces into pieces, too large a one finds some where there are none.
-Explanation explained(const recover::CanonicalMesh& mesh, double extent) {
+Explanation explained(const recover::CanonicalMesh& mesh, double extent, double round_step) {
   Explanation best;
   for (const double usual : kUsualTolerances) {
-    Explanation next{recover::find_regions(mesh, usual * extent), usual * extent};
+    Explanation next{recover::find_regions(mesh, usual * extent, round_step), usual * extent};
     if (std::getenv("V")) fmt::print("  tolerance {} regions {} effort {}\n", usual*extent, next.regions.size(), effort(next.regions));
     if (best.tolerance == 0 || 2 * effort(next.regions) < effort(best.regions)) best = std::move(next);
     if (are_mostly_round(mesh, best.regions)) break;
@@ -76,9 +76,9 @@ void recover_brep(Part& part, const RecoverOptions& options) {
   VERISIM_ASSERT(!part.has_brep());
   if (part.mesh.triangles.empty()) return;
   const recover::CanonicalMesh mesh = recover::canonical(part.mesh);
-  const auto [regions, tolerance] = options.tolerance > 0
-                                        ? Explanation{recover::find_regions(mesh, options.tolerance), options.tolerance}
-                                        : explained(mesh, extent_of(part.mesh));
+  const double given = options.tolerance, step = options.round_step_max;
+  const auto [regions, tolerance] = given > 0 ? Explanation{recover::find_regions(mesh, given, step), given}
+                                              : explained(mesh, extent_of(part.mesh), step);
   std::vector<std::uint32_t> face_of(mesh.triangles.size(), kNoFace);
   for (std::uint32_t r = 0; r < regions.size(); ++r) {
     part.faces.push_back(recover::face_of(mesh, regions[r]));

@@ -19,6 +19,8 @@ struct RecoverOptions {
   /// m, of vertices from their surface; 0: found out. Single precision's is tried first; a hundred times as much at
   /// most (numbers of five digits) where that explains far more.
   double tolerance = 0;
+  /// rad, 31.5 degrees: the largest angle between neighbouring facets that still counts as round.
+  double round_step_max = 0.5497787143782138;
 };
 
 /// Fills faces, edges and face_of_triangle of a part that has none, with a note on what was found. `exact` stays false.

@@ -12,6 +12,7 @@ namespace verisim::recover {
 namespace {
 
 constexpr std::size_t kEnough = 5;
+/// Of each kind: through fewer it passes by chance, having 3, 5, 6, 4 and 7 parameters and a whole mesh to choose from.
 constexpr std::array<std::size_t, 5> kFewest = {3, 8, 8, 9, 14};
 constexpr double kEqualStep = 0.02;  // relative
 constexpr double kBulge = 50;        // tolerances off the nearest plane: what is flatter fits anything
@@ -53,10 +54,14 @@ bool make_a_circle(const std::vector<double>& angles, double apart) {
 
 }  // namespace
 
+std::size_t fewest_points(Kind kind) {
+  return kFewest[static_cast<std::size_t>(kind)];
+}
+
 bool is_evident(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance) {
   if (s.kind == Kind::plane) return true;
   if (s.kind == Kind::torus && std::abs(s.a) < kBulge * tolerance) return false;  // a sphere, about any axis
-  if (points.size() < kFewest[static_cast<std::size_t>(s.kind)]) return false;
+  if (points.size() < fewest_points(s.kind)) return false;
   const SurfaceValue flat = plane_through(points);
   const bool bulges =
       std::ranges::any_of(points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > kBulge * tolerance; });

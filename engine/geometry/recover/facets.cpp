@@ -41,7 +41,8 @@ std::vector<Piece> border_of(const CanonicalMesh& mesh, const Facets& facets, st
   return pieces;
 }
 
-std::vector<FacetSide> sides_of(const std::vector<Piece>& pieces, const Facets& facets, std::uint32_t number) {
+std::vector<FacetSide> sides_of(const std::vector<Piece>& pieces, const Facets& facets, std::uint32_t number,
+                                double cos_smooth) {
   std::vector<FacetSide> sides;
   double longest = 0;
   for (const Piece& piece : pieces) {
@@ -49,7 +50,7 @@ std::vector<FacetSide> sides_of(const std::vector<Piece>& pieces, const Facets& 
     const double length = way.norm();
     if (sides.empty() || sides.back().facet != piece.facet) {
       const bool smooth =
-          piece.facet != kNone && facets.all[number].normal.dot(facets.all[piece.facet].normal) > kSmooth;
+          piece.facet != kNone && facets.all[number].normal.dot(facets.all[piece.facet].normal) > cos_smooth;
       sides.push_back({piece.facet, 0, Vector3d::Zero(), Vector3d::Zero(), smooth});
       longest = 0;
     }
@@ -69,7 +70,7 @@ std::vector<FacetSide> sides_of(const std::vector<Piece>& pieces, const Facets& 
 
 }  // namespace
 
-Facets facets_of(const CanonicalMesh& mesh, double tolerance) {
+Facets facets_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth) {
   Facets facets;
   facets.of_triangle.assign(mesh.triangles.size(), kNone);
   for (std::vector<std::uint32_t>& triangles : flat_regions(mesh, tolerance)) {
@@ -81,7 +82,7 @@ Facets facets_of(const CanonicalMesh& mesh, double tolerance) {
     measure(mesh, facet);
   }
   for (std::uint32_t i = 0; i < facets.all.size(); ++i)
-    facets.all[i].sides = sides_of(border_of(mesh, facets, i), facets, i);
+    facets.all[i].sides = sides_of(border_of(mesh, facets, i), facets, i, cos_smooth);
   return facets;
 }
 

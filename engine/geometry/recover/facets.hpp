@@ -7,17 +7,13 @@
 
 namespace verisim::recover {
 
-/// Two facets that meet at a smaller angle can be pieces of one round surface: a tessellation of 12 facets around is
-/// taken for round, one of 10 for a prism.
-inline constexpr double kSmooth = 0.8526401643540922;  // cosine of 31.5 degrees
-
 /// Where a facet meets another.
 struct FacetSide {
   std::uint32_t facet;  ///< the other; kNone: open or shared by more than two
   double length;        ///< m
   Vector3d middle;
   Vector3d direction;  ///< of the longest piece, unit
-  bool smooth;
+  bool smooth;         ///< they can be pieces of one round surface
 };
 
 struct Facet {
@@ -33,7 +29,7 @@ struct Facets {
   std::vector<std::uint32_t> of_triangle;
 };
 
-/// @param tolerance  m
-[[nodiscard]] Facets facets_of(const CanonicalMesh& mesh, double tolerance);
+/// @param tolerance  m  @param cos_smooth  cosine of the angle between normals up to which a side is smooth
+[[nodiscard]] Facets facets_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth);
 
 }  // namespace verisim::recover

@@ -14,6 +14,7 @@ constexpr double kNearlyTangent = 0.9;    // cosine
 constexpr double kCovers = 0.5;           // of a triangle's area, in the surface's coordinates
 constexpr double kQuarterOfATube = -0.2;  // cosine: a fan at most spans a fillet
 constexpr double kOnAxis = 4;             // tolerances
+constexpr double kRim = 30;               // tolerances: of drawings, against that of numbers
 
 }  // namespace
 
@@ -46,7 +47,9 @@ struct Piece::Corners {
 
 bool Piece::is_on(std::uint32_t t) const {
   for (std::size_t i = 0; i < 3; ++i) {
-    if (std::abs(surface_.distance(mesh_.corner(t, i))) > tolerance_) return false;
+    const bool is_rim = limits_.is_rim != nullptr && (*limits_.is_rim)[mesh_.triangles[t][i]];
+    const double within = (is_rim ? kRim : 1) * limits_.tolerance;
+    if (std::abs(surface_.distance(mesh_.corner(t, i))) > within) return false;
   }
   return true;
 }
@@ -66,41 +69,41 @@ Piece::Cover Piece::cover_of(const Corners& c) const {
   }
   const double area = 0.5 * (sides[0].x() * sides[1].y() - sides[0].y() * sides[1].x());
   const double length = std::max({sides[0].norm(), sides[1].norm(), (sides[1] - sides[0]).norm()});
-  return {inside_out_ ? -area : area, length};
+  return {limits_.inside_out ? -area : area, length};
 }
 
 bool Piece::is_regular(std::uint32_t t) const {
   if (!is_on(t)) return false;
-  const Corners c(mesh_, t, surface_, tolerance_);
+  const Corners c(mesh_, t, surface_, limits_.tolerance);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
-    if (c.gradient[i].dot(c.gradient[k]) < cos_step_) return false;
-    if (surface_.kind != Kind::sphere && surface_.kind != Kind::plane && c.outward[i].dot(c.outward[k]) < cos_step_)
+    if (c.gradient[i].dot(c.gradient[k]) < limits_.cos_step) return false;
+    if (surface_.kind != Kind::sphere && surface_.kind != Kind::plane && c.outward[i].dot(c.outward[k]) < limits_.cos_step)
       return false;
-    if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < cos_step_) return false;
+    if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < limits_.cos_step) return false;
   }
-  if (mesh_.heights[t] <= kSliver * tolerance_) return true;
+  if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-  if ((inside_out_ ? -along : along) <= kNearlyTangent) return false;
+  if ((limits_.inside_out ? -along : along) <= kNearlyTangent) return false;
   return surface_.kind == Kind::sphere || cover_of(c).area > kCovers * mesh_.areas[t];
 }
 
 bool Piece::is_possible(std::uint32_t t) const {
   if (!is_on(t)) return false;
-  const Corners c(mesh_, t, surface_, tolerance_);
+  const Corners c(mesh_, t, surface_, limits_.tolerance);
   const bool is_sphere = surface_.kind == Kind::sphere;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
-    if ((is_sphere ? c.gradient : c.outward)[i].dot((is_sphere ? c.gradient : c.outward)[k]) < cos_step_) return false;
+    if ((is_sphere ? c.gradient : c.outward)[i].dot((is_sphere ? c.gradient : c.outward)[k]) < limits_.cos_step) return false;
     if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < kQuarterOfATube) return false;
   }
-  if (mesh_.heights[t] <= kSliver * tolerance_) return true;
+  if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   if (is_sphere) {
     const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-    return (inside_out_ ? -along : along) > kCovers;
+    return (limits_.inside_out ? -along : along) > kCovers;
   }
   const Cover cover = cover_of(c);
-  return cover.area > kOnAxis * tolerance_ * cover.length;
+  return cover.area > kOnAxis * limits_.tolerance * cover.length;
 }
 
 }  // namespace verisim::recover

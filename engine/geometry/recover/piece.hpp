@@ -11,12 +11,17 @@
 
 namespace verisim::recover {
 
+struct PieceLimits {
+  double tolerance;                 ///< m, of corners from the surface
+  const std::vector<bool>* is_rim;  ///< vertices that may be further from it; nullptr: none
+  double cos_step;                  ///< cosine of the longest step around it
+  bool inside_out;                  ///< the material is outside of it
+};
+
 class Piece {
  public:
-  /// @param tolerance  m, of corners from the surface  @param cos_step  cosine of the largest angle between facets
-  /// @param inside_out  the material is outside of the surface
-  Piece(const CanonicalMesh& mesh, const SurfaceValue& surface, double tolerance, double cos_step, bool inside_out)
-      : mesh_(mesh), surface_(surface), tolerance_(tolerance), cos_step_(cos_step), inside_out_(inside_out) {}
+  Piece(const CanonicalMesh& mesh, const SurfaceValue& surface, const PieceLimits& limits)
+      : mesh_(mesh), surface_(surface), limits_(limits) {}
 
   /// As tessellations mostly are: a triangle no longer than a step each way, and nearly tangent.
   [[nodiscard]] bool is_regular(std::uint32_t triangle) const;
@@ -33,8 +38,7 @@ class Piece {
 
   const CanonicalMesh& mesh_;
   SurfaceValue surface_;
-  double tolerance_, cos_step_;
-  bool inside_out_;
+  PieceLimits limits_;
 };
 
 }  // namespace verisim::recover

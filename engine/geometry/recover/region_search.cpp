@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/base/pinned_math.hpp"
 #include "engine/geometry/recover/evidence.hpp"
 #include "engine/geometry/recover/facets.hpp"
 #include "engine/geometry/recover/flat_regions.hpp"
@@ -18,30 +19,51 @@ namespace verisim::recover {
 namespace {
 
 constexpr Kind kRoundKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
-constexpr double kCosStep = 0.824;  // 34.5
 constexpr double kLargerByFar = 1.001;  // in area, for a kind that is less simple
 constexpr int kGrowings = 8;
 constexpr std::array<std::size_t, 4> kAround = {2, 3, 6, 12};  // steps
 constexpr std::size_t kAgain = 3;                              // steps from what was taken
+constexpr std::size_t kBarren = 2;                             // steps from where nothing fits
 constexpr int kSteps = 4;                                      // facets of a row to each side
 constexpr double kNarrower = 0.25;  // of a plane's width: a neighbour that curves away from it
 constexpr std::size_t kFewFacets = 4;
+constexpr double kLongerStep = 1.1;  // of a chord, against the mean of two
 constexpr double kSnug = 0.5;
 constexpr std::size_t kFan = 2;  // triangles of a facet
 constexpr double kMostlySharp = 0.6;  // of a border
 
 struct Candidate {
   SurfaceValue surface;
+  bool by_inner = false;  // fitted to vertices off sharp edges
   std::vector<std::uint32_t> triangles;
   double area = 0;
 };
 
+/// Is a vertex on a sharp or open edge?
+std::vector<bool> rim_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth) {
+  std::vector<bool> is_rim(mesh.vertices.size(), false);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t n = mesh.neighbors[t][i];
+      if (n != kNone) {
+        const bool sliver = std::min(mesh.heights[t], mesh.heights[n]) <= kSliver * tolerance;
+        if (sliver || mesh.normals[t].dot(mesh.normals[n]) > cos_smooth) continue;
+      }
+      is_rim[mesh.triangles[t][i]] = is_rim[mesh.triangles[t][(i + 1) % 3]] = true;
+    }
+  }
+  return is_rim;
+}
+
 class Search {
  public:
-  Search(const CanonicalMesh& mesh, double tolerance)
+  Search(const CanonicalMesh& mesh, double tolerance, double round_step)
       : mesh_(mesh),
         tolerance_(tolerance),
-        facets_(facets_of(mesh, tolerance)),
+        cos_smooth_(pinned::cos(round_step)),
+        cos_step_(pinned::cos(kLongerStep * round_step)),
+        facets_(facets_of(mesh, tolerance, cos_smooth_)),
+        is_rim_(rim_of(mesh, tolerance, cos_smooth_)),
         region_of_(mesh.triangles.size(), kNone),
         taken_(mesh.triangles.size(), false),
         taken_of_facet_(facets_.all.size(), 0),
@@ -148,8 +170,14 @@ class Search {
     return result;
   }
 
-  [[nodiscard]] Sample sample_of(const std::vector<std::uint32_t>& facets) const {
+  struct Around {
     Sample sample;
+    std::vector<Vector3d> inner;  ///< its points that are on no sharp edge
+  };
+
+  [[nodiscard]] Around sample_of(const std::vector<std::uint32_t>& facets) const {
+    Around around;
+    Sample& sample = around.sample;
     std::vector<std::uint32_t> vertices;
     for (const std::uint32_t f : facets) {
       const Facet& facet = facets_.all[f];
@@ -157,25 +185,28 @@ class Search {
       sample.normals.push_back(facet.normal);
       vertices.insert(vertices.end(), facet.vertices.begin(), facet.vertices.end());
     }
-    sample.points = points_of(std::move(vertices));
-    return sample;
+    sample.points = points_of(vertices, false);
+    around.inner = points_of(std::move(vertices), true);
+    return around;
   }
 
-  [[nodiscard]] std::vector<Vector3d> points_of(std::vector<std::uint32_t> vertices) const {
+  [[nodiscard]] std::vector<Vector3d> points_of(std::vector<std::uint32_t> vertices, bool inner) const {
     std::ranges::sort(vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::vector<Vector3d> points;
     points.reserve(vertices.size());
-    for (const std::uint32_t v : vertices) points.push_back(mesh_.vertices[v]);
+    for (const std::uint32_t v : vertices) {
+      if (!inner || !is_rim_[v]) points.push_back(mesh_.vertices[v]);
+    }
     return points;
   }
 
-  [[nodiscard]] std::vector<Vector3d> points_of_triangles(const std::vector<std::uint32_t>& triangles) const {
+  [[nodiscard]] std::vector<Vector3d> points_of_triangles(const std::vector<std::uint32_t>& triangles, bool inner) const {
     std::vector<std::uint32_t> vertices;
     for (const std::uint32_t t : triangles) {
       vertices.insert(vertices.end(), mesh_.triangles[t].begin(), mesh_.triangles[t].end());
     }
-    return points_of(std::move(vertices));
+    return points_of(std::move(vertices), inner);
   }
 
   [[nodiscard]] bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points, double within) const {
@@ -183,9 +214,9 @@ class Search {
   }
 
   /// Free triangles, joined to the seed, that stand for the surface. Ascending.
-  std::vector<std::uint32_t> grow(const SurfaceValue& s, std::uint32_t seed) {
+  std::vector<std::uint32_t> grow(const SurfaceValue& s, bool by_inner, std::uint32_t seed) {
     std::vector<std::uint32_t> found;
-    const Piece piece = piece_of(s, seed);
+    const Piece piece = piece_of(s, by_inner, seed);
     if (!piece.is_regular(seed)) return found;
     ++growing_;
     found.push_back(seed);
@@ -201,19 +232,21 @@ class Search {
     return found;
   }
 
-  std::optional<Candidate> candidate(Kind kind, const Sample& sample, std::uint32_t seed) {
+  /// The surface that passes through a sample, grown from the seed. Where a drawn surface ends at a sharp edge, its
+  /// vertices are off by as much as the drawing's tolerance: with by_inner those are not asked.
+  std::optional<Candidate> candidate(Kind kind, const Sample& sample, bool by_inner, std::uint32_t seed) {
     std::optional<SurfaceValue> surface = fit(kind, sample, tolerance_);
     if (!surface || !passes_through(*surface, sample.points, tolerance_)) return std::nullopt;
     Candidate best;
     for (int i = 0; i < kGrowings; ++i) {
-      std::vector<std::uint32_t> triangles = grow(*surface, seed);
+      std::vector<std::uint32_t> triangles = grow(*surface, by_inner, seed);
       if (triangles.size() <= best.triangles.size()) break;
-      best = {*surface, std::move(triangles)};
-      surface = refit(*surface, points_of_triangles(best.triangles), tolerance_);
+      best = {*surface, by_inner, std::move(triangles)};
+      surface = refit(*surface, points_of_triangles(best.triangles, by_inner), tolerance_);
       if (!surface) break;
     }
     if (best.triangles.empty()) return std::nullopt;
-    const std::vector<Vector3d> points = points_of_triangles(best.triangles);
+    const std::vector<Vector3d> points = points_of_triangles(best.triangles, by_inner);
     if (surface && passes_through(*surface, points, tolerance_)) best.surface = *surface;
     if (!passes_through(best.surface, points, kSnug * tolerance_)) return std::nullopt;
     if (!is_evident(best.surface, points, tolerance_)) return std::nullopt;
@@ -238,8 +271,15 @@ class Search {
     for (const Kind kind : kRoundKinds) {
       for (const std::vector<std::uint32_t>& facets : samples) {
         if (facets.size() < 3) continue;
-        std::optional<Candidate> next = candidate(kind, sample_of(facets), seed_of(facet));
-        if (next && (!best || next->area > kLargerByFar * best->area)) best = std::move(next);
+        const auto consider = [&](const Sample& sample, bool by_inner) {
+          std::optional<Candidate> next = candidate(kind, sample, by_inner, seed_of(facet));
+          if (next && (!best || next->area > kLargerByFar * best->area)) best = std::move(next);
+        };
+        auto [sample, inner] = sample_of(facets);
+        consider(sample, false);
+        if (kind != Kind::torus || inner.size() == sample.points.size() || inner.size() < fewest_points(kind)) continue;
+        sample.points = std::move(inner);
+        consider(sample, true);
       }
     }
     if (best) {
@@ -256,7 +296,7 @@ class Search {
 
   /// What is not regular beside a surface found, but can be a piece of it and is no face by itself.
   void add_fans(Candidate& found) {
-    const Piece piece = piece_of(found.surface, found.triangles.front());
+    const Piece piece = piece_of(found.surface, found.by_inner, found.triangles.front());
     ++growing_;
     for (const std::uint32_t t : found.triangles) mark_[t] = growing_;
     for (std::size_t i = 0; i < found.triangles.size(); ++i) {
@@ -273,16 +313,14 @@ class Search {
     return facets_.all[facets_.of_triangle[t]].triangles.size() <= kFan;
   }
 
-  [[nodiscard]] Piece piece_of(const SurfaceValue& s, std::uint32_t seed) const {
+  [[nodiscard]] Piece piece_of(const SurfaceValue& s, bool by_inner, std::uint32_t seed) const {
     const bool inside_out = s.gradient(mesh_.centers[seed]).dot(mesh_.normals[seed]) < 0;
-    return {mesh_, s, tolerance_, kCosStep, inside_out};
+    return {mesh_, s, {tolerance_, by_inner ? &is_rim_ : nullptr, cos_step_, inside_out}};
   }
 
   /// From beside a place where nothing fits little will.
   bool pass_by(std::uint32_t facet) {
-    for (const FacetSide& side : facets_.all[facet].sides) {
-      if (side.smooth) untried_[side.facet] = false;
-    }
+    for (const std::uint32_t near : around(facet, kBarren)) untried_[near] = false;
     return false;
   }
 
@@ -325,7 +363,7 @@ class Search {
         },
         surface);
     take(std::move(surface), best.triangles);
-    values_.back() = best.surface;
+    values_.back() = {best.surface, best.by_inner};
   }
 
   void take(Surface surface, std::vector<std::uint32_t> triangles) {
@@ -355,7 +393,7 @@ class Search {
 
   void take_plane(std::uint32_t facet) {
     const std::vector<std::uint32_t>& triangles = facets_.all[facet].triangles;
-    SurfaceValue plane = plane_through(points_of_triangles(triangles));
+    SurfaceValue plane = plane_through(points_of_triangles(triangles, false));
     if (plane.axis.dot(facets_.all[facet].normal) < 0) plane.axis = -plane.axis;
     take(plane.surface(), triangles);
   }
@@ -385,7 +423,7 @@ class Search {
       for (const std::uint32_t t : mesh_.neighbors[found[i]]) {
         if (t == kNone || mark_[t] == growing_ || taken_[t]) continue;
         const bool sliver = std::min(mesh_.heights[t], mesh_.heights[found[i]]) <= kSliver * tolerance_;
-        if (!sliver && mesh_.normals[t].dot(mesh_.normals[found[i]]) <= kSmooth) continue;
+        if (!sliver && mesh_.normals[t].dot(mesh_.normals[found[i]]) <= cos_smooth_) continue;
         mark_[t] = growing_;
         found.push_back(t);
       }
@@ -413,7 +451,7 @@ class Search {
 
   void give_to(std::uint32_t larger, const std::vector<double>& areas, std::vector<std::uint32_t>& asked_by) {
     std::vector<std::uint32_t>& triangles = regions_[larger].triangles;
-    const Piece piece = piece_of(*values_[larger], triangles.front());
+    const Piece piece = piece_of(values_[larger]->first, values_[larger]->second, triangles.front());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (const std::uint32_t t : mesh_.neighbors[triangles[i]]) {
         if (t == kNone || region_of_[t] == larger) continue;
@@ -443,9 +481,11 @@ class Search {
 
   const CanonicalMesh& mesh_;
   double tolerance_;
+  double cos_smooth_, cos_step_;
   Facets facets_;
+  std::vector<bool> is_rim_;  // vertices
   std::vector<Region> regions_;
-  std::vector<std::optional<SurfaceValue>> values_;  // of regions, where round
+  std::vector<std::optional<std::pair<SurfaceValue, bool>>> values_;  // of regions, where round
   std::vector<std::uint32_t> region_of_;             // triangles
   std::vector<bool> taken_;                    // triangles
   std::vector<std::uint32_t> taken_of_facet_;  // how many of its triangles
@@ -457,8 +497,8 @@ class Search {
 
 }  // namespace
 
-std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance) {
-  return Search(mesh, tolerance).run();
+std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step) {
+  return Search(mesh, tolerance, round_step).run();
 }
 
 }  // namespace verisim::recover

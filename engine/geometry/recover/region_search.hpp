@@ -17,7 +17,8 @@ struct Region {
   std::vector<std::uint32_t> triangles;  ///< ascending, joined by sides
 };
 
-/// Every triangle is in one region. @param tolerance  m, of vertices from their surface
-[[nodiscard]] std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance);
+/// Every triangle is in one region. @param tolerance  m, of vertices from their surface  @param round_step  rad, the
+/// largest angle at which facets meet that can be pieces of one round surface
+[[nodiscard]] std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step);
 
 }  // namespace verisim::recover
