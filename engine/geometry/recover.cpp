@@ -1,7 +1,6 @@
 #include "engine/geometry/recover.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
@@ -14,7 +13,7 @@ namespace verisim {
 namespace {
 
 /// Of the mesh's extent: single precision, numbers of six digits, of five.
-constexpr std::array<double, 3> kUsualTolerances = {3e-7, 4e-6, 3e-5};
+constexpr std::array<double, 3> kUsualTolerances = {3e-7, 4e-6, 4.5e-5};
 
 double extent_of(const TriangleMesh& mesh) {
   double farthest = bounds_of(mesh).size().norm();
@@ -48,12 +47,12 @@ struct Explanation {
 };
 
 /// The explanation by the smallest tolerance, unless a larger one halves the effort: too small a tolerance breaks
-/// surfaces into pieces, too large a one finds some where there are none.
+/// surfaces into pieces, too large a one finds some where there are none. It is not even tried where the smaller one
+/// explains most of what is not flat: the rest is a free form.
 Explanation explained(const recover::CanonicalMesh& mesh, double extent, double round_step) {
   Explanation best;
   for (const double usual : kUsualTolerances) {
     Explanation next{recover::find_regions(mesh, usual * extent, round_step), usual * extent};
-    if (std::getenv("V")) fmt::print("  tolerance {} regions {} effort {}\n", usual*extent, next.regions.size(), effort(next.regions));
     if (best.tolerance == 0 || 2 * effort(next.regions) < effort(best.regions)) best = std::move(next);
     if (are_mostly_round(mesh, best.regions)) break;
   }

@@ -6,9 +6,14 @@
 // the file's numbers. Part coordinates, m. The result is the same for every order of triangles and vertices, every
 // time.
 //
-// What it cannot know: a prism of 12 or more equal sides is taken for a cylinder; a round surface of fewer than four
-// facets becomes planes; coplanar or coaxial pieces that do not touch are faces of their own; `Face::area` is that of
-// the triangles.
+// Round or a prism: a mesh does not say. A regular prism has the vertices of the cylinder around it, facet by facet,
+// and cylinders of 12 to 24 facets are far more common in files than such prisms. So the angle at which facets meet
+// decides: up to `round_step_max` they are round. By default 12 sides are a cylinder, 11 are planes; who knows better
+// says so.
+//
+// What else it cannot know: a round surface of fewer than four facets becomes planes; coplanar or coaxial pieces that
+// do not touch are faces of their own; `Face::area` is that of the triangles. Free forms are `other`, but for the piece
+// of one that is, to the tolerance, a torus of more than 200 triangles.
 #pragma once
 
 #include "engine/geometry/part.hpp"
@@ -16,15 +21,16 @@
 namespace verisim {
 
 struct RecoverOptions {
-  /// m, of vertices from their surface; 0: found out. Single precision's is tried first; a hundred times as much at
-  /// most (numbers of five digits) where that explains far more.
+  /// m, of every vertex of a face from its surface; 0: found out. Single precision's is tried first (3e-7 of the
+  /// extent); 150 times as much at most (numbers of five digits) where that explains far more. Where a torus ends
+  /// at a sharp edge, vertices may be off by 30 times that: as far as drawing programs' own edges are.
   double tolerance = 0;
-  /// rad, 31.5 degrees: the largest angle between neighbouring facets that still counts as round.
+  /// rad, 31.5 degrees: the largest angle at which neighbouring facets meet that can be pieces of one round surface.
   double round_step_max = 0.5497787143782138;
 };
 
 /// Fills faces, edges and face_of_triangle of a part that has none, with a note on what was found. `exact` stays false.
-/// About 20 us per triangle, 0.5 ms where nothing fits. @pre !part.has_brep()
+/// About 10 us per triangle, 0.1 ms where nothing fits. @pre !part.has_brep(), vertices finite
 void recover_brep(Part& part, const RecoverOptions& options = {});
 
 }  // namespace verisim

@@ -4,32 +4,15 @@
 
 #include <algorithm>
 #include <ctime>
-#include <cstring>
 #include <vector>
 
 #include "engine/geometry/recover.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/parametrization.hpp"
+#include "tests/geometry/recovered.hpp"
 
 namespace verisim {
 namespace {
-
-/// A part's triangles in millimetres and single precision, as a binary STL file has them; the drawn face of each.
-struct Bare {
-  Part part;
-  std::vector<std::uint32_t> drawn_face_of;
-};
-
-Bare bare(const Part& drawn) {
-  Bare result;
-  result.part.name = drawn.name;
-  result.part.mesh = drawn.mesh;
-  for (Vector3d& p : result.part.mesh.vertices) p = 0.001 * (1000 * p).cast<float>().cast<double>();
-  std::vector<std::string> notes;
-  repair(result.part.mesh, notes);
-  std::swap(result.drawn_face_of, result.part.mesh.face_of_triangle);
-  return result;
-}
 
 bool near(double found, double drawn) {
   return std::abs(found - drawn) <= 0.001 * drawn;
@@ -60,95 +43,118 @@ bool is_again(const Surface& found, const Surface& drawn) {
 }
 
 struct Share {
-  int faces_drawn = 0, faces_again = 0, faces_found = 0, torn = 0, triangles = 0;
-  double area_drawn = 0, area_again = 0;
-  double seconds = 0;
-  std::map<std::string, int> missing;
+  int faces_drawn = 0, faces_again = 0, faces_found = 0;
+  std::size_t triangles = 0;
+  double area_drawn = 0, area_again = 0;  ///< m^2
+  double seconds = 0;                     ///< of this thread's processor
+
+  [[nodiscard]] double of_area() const { return area_again / area_drawn; }
 };
 
-std::string told(const Surface& s) {
-  if (const auto* d = std::get_if<Cylinder>(&s)) return fmt::format("cylinder {}", d->radius);
-  if (const auto* d = std::get_if<Cone>(&s)) return fmt::format("cone {}", d->half_angle);
-  if (const auto* d = std::get_if<Sphere>(&s)) return fmt::format("sphere {}", d->radius);
-  if (const auto* d = std::get_if<Torus>(&s)) return fmt::format("torus {} {}", d->major_radius, d->minor_radius);
-  return kSurfaceNames[s.index()];
-}
-
-void tell(const Part& part, const Part& drawn, const std::vector<std::uint32_t>& of, std::uint32_t face) {
-  const Face& f = drawn.faces[face];
-  fmt::print("  {} {} u {} {} v {} {} area {}:", drawn.name, told(f.surface), f.u_range[0], f.u_range[1], f.v_range[0], f.v_range[1], f.area);
-  std::map<std::string, int> count;
-  std::map<std::uint32_t, int> n;
-  for (std::size_t t = 0; t < of.size(); ++t) if (of[t] == face) ++n[part.mesh.face_of_triangle[t]];
-  for (auto [i, k] : n) ++count[kSurfaceNames[part.faces[i].surface.index()]];
-  for (auto& [i, k] : count) fmt::print(" {} {}", k, i);
-  int left = 6;
-  for (auto [i, k] : n) if (left-- > 0) fmt::print("; {}: {} triangles", told(part.faces[i].surface), k);
-  std::vector<double> off;
-  for (std::size_t t = 0; t < of.size(); ++t) if (of[t] == face) for (auto v : part.mesh.triangles[t]) { auto q = testing::project(f.surface, part.mesh.vertices[v]); if (q) off.push_back(std::abs(q->distance)); }
-  std::ranges::sort(off);
-  if (!off.empty()) fmt::print("\n     off {} {} {} {}", off[off.size() / 2], off[off.size() * 9 / 10], off[off.size() * 99 / 100], off.back());
-  fmt::print("\n");
-}
-
-void add(Share& share, const Part& drawn) {
-  auto [part, drawn_face_of] = bare(drawn);
-  const std::clock_t begin = std::clock();
-  recover_brep(part);
-  share.seconds += double(std::clock() - begin) / CLOCKS_PER_SEC;
-  share.triangles += static_cast<int>(part.mesh.triangles.size());
+/// A drawn face is found again if 95 % of its area lies on faces that are its own again.
+void compare(Share& share, const Part& drawn, const Part& found, const std::vector<std::uint32_t>& drawn_face_of) {
   std::vector<double> area(drawn.faces.size()), again(drawn.faces.size());
-  for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = part.mesh.triangles[t];
-    const std::vector<Vector3d>& p = part.mesh.vertices;
+  for (std::size_t t = 0; t < found.mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = found.mesh.triangles[t];
+    const std::vector<Vector3d>& p = found.mesh.vertices;
     const double size = 0.5 * (p[b] - p[a]).cross(p[c] - p[a]).norm();
     const std::uint32_t number = drawn_face_of[t];
     area[number] += size;
-    if (is_again(part.faces.at(part.mesh.face_of_triangle[t]).surface, drawn.faces[number].surface))
+    if (is_again(found.faces.at(found.mesh.face_of_triangle[t]).surface, drawn.faces[number].surface))
       again[number] += size;
   }
   for (std::size_t f = 0; f < area.size(); ++f) {
     ++share.faces_drawn;
     share.area_drawn += area[f];
     share.area_again += again[f];
-    if (again[f] >= 0.95 * area[f])
-      ++share.faces_again;
-    else if (std::getenv("V"))
-      tell(part, drawn, drawn_face_of, static_cast<std::uint32_t>(f));
-    if (again[f] < 0.95 * area[f])
-      ++share.missing[kSurfaceNames[drawn.faces[f].surface.index()]];
+    if (again[f] >= 0.95 * area[f]) ++share.faces_again;
   }
-  share.faces_found += static_cast<int>(part.faces.size());
+  share.faces_found += static_cast<int>(found.faces.size());
+  share.triangles += found.mesh.triangles.size();
 }
 
-TEST(Recover, X) {
-  for (const auto& [defl, ang] : {std::pair{0.0001, 0.2}, std::pair{0.0, 0.1}, std::pair{0.0, 0.4}}) {
-    double total = 0;
-    fmt::print("--- {} {}\n", defl, ang);
-  for (const char* name :
-       {"freecad_cc0/axis.stp", "freecad_cc0/bearing_20x37x9.stp", "freecad_cc0/crank_arm.stp", "freecad_cc0/crank_base.stp",
-        "freecad_cc0/crank_disk.stp", "freecad_cc0/engine_bushing.stp", "freecad_cc0/engine_conrod.stp",
-        "freecad_cc0/engine_conrod_cap.stp", "freecad_cc0/engine_cylinder.stp", "freecad_cc0/engine_piston.stp",
-        "occt/mal_ecrou.stp", "occt/mal_tige.stp", "occt/mal_vis.stp", "occt/Axis_of_bearing.stp", "occt/screw.step"}) {
-    if (std::getenv("ONLY") && !std::strstr(name, std::getenv("ONLY"))) continue;
-    Share share;
-    for (const Part& drawn : testing::load(testing::model_path(name), {.deflection = defl, .angular_deflection = ang})) {
-      const int before = share.faces_again;
-      add(share, drawn);
-      if (share.faces_again - before < int(drawn.faces.size()) && std::getenv("V")) {
-        auto [part, of] = bare(drawn);
-        write_stl(std::string("/tmp/rec_") + std::filesystem::path(name).stem().string() + std::to_string(ang) + drawn.name + ".stl", part.mesh, 1000);
+/// No face is invented: every vertex of a face lies on it, to single precision; where a tube ends at a sharp edge, to
+/// what the drawing's own edges are off.
+void expect_vertices_on_faces(const Part& part) {
+  double extent = bounds_of(part.mesh).size().norm();
+  for (const Vector3d& p : part.mesh.vertices) extent = std::max(extent, p.cwiseAbs().maxCoeff());
+  for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t) {
+    const Face& face = part.faces[part.mesh.face_of_triangle[t]];
+    const double within = (std::holds_alternative<Torus>(face.surface) ? 9.1e-6 : 3.1e-7) * extent;
+    for (const std::uint32_t v : part.mesh.triangles[t]) {
+      const auto on = testing::project(face.surface, part.mesh.vertices[v]);
+      if (on) {
+        ASSERT_LE(std::abs(on->distance), within) << part.name << ", a " << kSurfaceNames[face.surface.index()];
       }
     }
-    std::string missing;
-    for (const auto& [kind, count] : share.missing) missing += fmt::format(" {} {}", count, kind);
-    fmt::print("{:36} {:6} triangles {:3} of {:3} faces, {:7.3f} % of area, found {:3}, {:7.3f} s; missing:{}\n", name,
-               share.triangles, share.faces_again, share.faces_drawn, 100 * share.area_again / share.area_drawn,
-               share.faces_found, share.seconds, missing);
-    total += share.seconds;
   }
-    fmt::print("total {}\n", total);
+}
+
+Share share_of(const char* file, const LoadOptions& options) {
+  Share share;
+  for (const Part& drawn : testing::load(testing::model_path(file), options)) {
+    std::vector<std::uint32_t> drawn_face_of;
+    Part part = testing::bare(drawn, &drawn_face_of);
+    const std::clock_t begin = std::clock();
+    recover_brep(part);
+    share.seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    compare(share, drawn, part, drawn_face_of);
+    expect_vertices_on_faces(part);
   }
+  fmt::print("{:32} {:6} triangles: {:2} of {:2} faces, {:7.3f} % of the area, by {:2} faces in {:.3f} s\n", file,
+             share.triangles, share.faces_again, share.faces_drawn, 100 * share.of_area(), share.faces_found,
+             share.seconds);
+  return share;
+}
+
+/// What was reached: a ratchet.
+struct Reached {
+  const char* file;
+  int faces_missing = 0;
+  double of_area = 0.9999;
+  int faces_more = 0;  ///< found than drawn: a drawn one in pieces
+};
+
+class RecoverShare : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!testing::models_are_here()) GTEST_SKIP() << "the shared models are not here: " << testing::model_path("");
+  }
+  static void expect_reached(const Reached& reached, const LoadOptions& options) {
+    const Share share = share_of(reached.file, options);
+    EXPECT_GE(share.faces_again, share.faces_drawn - reached.faces_missing) << reached.file;
+    EXPECT_GE(share.of_area(), reached.of_area) << reached.file;
+    EXPECT_LE(share.faces_found, share.faces_drawn + reached.faces_more) << reached.file;
+  }
+};
+
+// The piston's two fillets are free forms: they count as found where they are `other`. The screw's head is a tube that
+// passes its axis, with edges that are off by 0.3 um as drawn: one of its three pieces stays `other`.
+TEST_F(RecoverShare, OfDrawnPartsIsAllButWhatIsListed) {
+  for (const Reached& reached : {
+           Reached{"freecad_cc0/axis.stp"},
+           Reached{"freecad_cc0/bearing_20x37x9.stp", 0, 0.9999, 2},
+           Reached{"freecad_cc0/crank_arm.stp"},
+           Reached{"freecad_cc0/crank_base.stp"},
+           Reached{"freecad_cc0/crank_disk.stp"},
+           Reached{"freecad_cc0/engine_bushing.stp"},
+           Reached{"freecad_cc0/engine_conrod.stp"},
+           Reached{"freecad_cc0/engine_conrod_cap.stp"},
+           Reached{"freecad_cc0/engine_cylinder.stp"},
+           Reached{"freecad_cc0/engine_piston.stp", 0, 0.999, 5},
+           Reached{"occt/mal_ecrou.stp"},
+           Reached{"occt/mal_tige.stp"},
+           Reached{"occt/mal_vis.stp"},
+           Reached{"occt/Axis_of_bearing.stp"},
+           Reached{"occt/screw.step", 1, 0.92},
+       })
+    expect_reached(reached, {.deflection = 1e-4, .angular_deflection = 0.2});
+}
+
+TEST_F(RecoverShare, OfCoarseTessellationsIsNoLess) {
+  for (const Reached& reached : {Reached{"freecad_cc0/axis.stp"}, Reached{"freecad_cc0/engine_conrod.stp"},
+                                 Reached{"freecad_cc0/engine_piston.stp", 0, 0.999, 2}, Reached{"occt/mal_vis.stp"}})
+    expect_reached(reached, {.angular_deflection = 0.4});
 }
 
 }  // namespace

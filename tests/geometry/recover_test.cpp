@@ -6,29 +6,21 @@
 
 #include <algorithm>
 
-#include "engine/base/random.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/parametrization.hpp"
+#include "tests/geometry/recovered.hpp"
 
 namespace verisim {
 namespace {
 
+using testing::bare;
+using testing::bytes_of;
 using testing::make;
 using testing::placed;
+using testing::ring_mesh;
+using testing::shuffled;
 using Kind = Solid::Kind;
 using Counts = std::map<std::string, int>;
-
-/// The part as a binary STL file has it: triangles alone, in millimetres and single precision.
-Part bare(const Part& part) {
-  Part result;
-  result.name = part.name;
-  result.mesh = part.mesh;
-  result.mesh.face_of_triangle.clear();
-  for (Vector3d& p : result.mesh.vertices) p = 0.001 * (1000 * p).cast<float>().cast<double>();
-  std::vector<std::string> notes;
-  repair(result.mesh, notes);
-  return result;
-}
 
 Part recovered(const Part& part) {
   Part result = bare(part);
@@ -148,23 +140,6 @@ TEST(Recover, FindsEverySurfaceHoweverItLies) {
   expect_sound(cut, 2e-7);
 }
 
-/// A ring of tube, in quads of two triangles.
-TriangleMesh ring_mesh(double major, double minor, std::uint32_t around, std::uint32_t along) {
-  TriangleMesh mesh;
-  for (std::uint32_t i = 0; i < around; ++i) {
-    for (std::uint32_t j = 0; j < along; ++j) {
-      const double u = 2 * M_PI * i / around, v = 2 * M_PI * j / along;
-      const double rho = major + minor * std::cos(v);
-      mesh.vertices.emplace_back(rho * std::cos(u), rho * std::sin(u), minor * std::sin(v));
-      const std::uint32_t i2 = (i + 1) % around, j2 = (j + 1) % along;
-      const std::uint32_t a = i * along + j, b = i2 * along + j, c = i2 * along + j2, d = i * along + j2;
-      mesh.triangles.push_back({a, b, c});
-      mesh.triangles.push_back({a, c, d});
-    }
-  }
-  return mesh;
-}
-
 TEST(Recover, FindsATorusWhoseStripsAreConesAndCylinders) {
   Part part;
   part.mesh = ring_mesh(0.05, 0.012, 48, 24);
@@ -177,7 +152,79 @@ TEST(Recover, FindsATorusWhoseStripsAreConesAndCylinders) {
   expect_sound(part, 1e-9);
 }
 
-TEST(Recover, LeavesAPrismOfEightSidesItsPlanes) {
+// Within one of its facets such a ring bends by a third of its tube.
+TEST(Recover, FindsAThinRingInLongFacets) {
+  Part part;
+  part.mesh = ring_mesh(0.02, 0.0003, 24, 32);
+  recover_brep(part);
+  EXPECT_EQ(testing::face_counts(part), (Counts{{"torus", 1}}));
+  EXPECT_NEAR(faces_of_kind<Torus>(part).at(0).minor_radius, 0.0003, 1e-9);
+}
+
+// A tube wider than its ring: the lens between its two points on the axis.
+TEST(Recover, FindsATubeThatPassesItsAxis) {
+  Part part;
+  constexpr std::uint32_t kAround = 40, kAlong = 12;
+  const double major = 0.008, minor = 0.05;
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    for (std::uint32_t j = 0; j <= kAlong; ++j) {
+      const double u = 2 * M_PI * i / kAround, v = 1.5 * M_PI - 0.3 * j / kAlong - 0.2;
+      const double rho = -(major + minor * std::cos(v));
+      part.mesh.vertices.emplace_back(rho * std::cos(u), rho * std::sin(u), minor * std::sin(v));
+      if (j == kAlong) continue;
+      const std::uint32_t a = i * (kAlong + 1) + j, b = (i + 1) % kAround * (kAlong + 1) + j;
+      part.mesh.triangles.insert(part.mesh.triangles.end(), {{a, a + 1, b + 1}, {a, b + 1, b}});
+    }
+  }
+  recover_brep(part);
+  ASSERT_EQ(testing::face_counts(part), (Counts{{"torus", 1}}));
+  const Torus torus = faces_of_kind<Torus>(part).at(0);
+  EXPECT_NEAR(torus.major_radius, major, 1e-8);
+  EXPECT_NEAR(torus.minor_radius, minor, 1e-8);
+  EXPECT_NEAR(part.faces[0].v_range[1] - part.faces[0].v_range[0], 0.3, 1e-6);
+}
+
+// --- round or a prism -----------------------------------------------------------------------------------------------
+
+/// A regular prism of this many sides, closed.
+TriangleMesh prism_mesh(std::uint32_t sides) {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * M_PI * i / sides;
+    mesh.vertices.emplace_back(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0);
+    mesh.vertices.emplace_back(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.05);
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % sides);
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+    if (i > 0 && i + 1 < sides) mesh.triangles.insert(mesh.triangles.end(), {{0, b, a}, {1, a + 1, b + 1}});
+  }
+  return mesh;
+}
+
+Counts faces_of_prism(std::uint32_t sides, const RecoverOptions& options) {
+  Part part;
+  part.mesh = prism_mesh(sides);
+  recover_brep(part, options);
+  return testing::face_counts(part);
+}
+
+// The rule of the header: 31.5 degrees, between the 32.7 of 11 sides and the 30 of 12.
+TEST(Recover, TakesAPrismOfTwelveSidesForRoundAndOneOfElevenNot) {
+  const Counts round = {{"plane", 2}, {"cylinder", 1}};
+  for (const std::uint32_t sides : {12U, 13U, 16U, 24U, 150U}) EXPECT_EQ(faces_of_prism(sides, {}), round) << sides;
+  for (const std::uint32_t sides : {3U, 4U, 6U, 8U, 10U, 11U})
+    EXPECT_EQ(faces_of_prism(sides, {}), (Counts{{"plane", static_cast<int>(sides) + 2}})) << sides;
+}
+
+TEST(Recover, CountsAsRoundWhatItIsToldTo) {
+  const Counts round = {{"plane", 2}, {"cylinder", 1}};
+  const double degree = M_PI / 180;
+  EXPECT_EQ(faces_of_prism(16, {.round_step_max = 22 * degree}), (Counts{{"plane", 18}})) << "steps of 22.5 degrees";
+  EXPECT_EQ(faces_of_prism(16, {.round_step_max = 23 * degree}), round);
+  EXPECT_EQ(faces_of_prism(12, {.round_step_max = 25 * degree}), (Counts{{"plane", 14}})) << "a prism, if one knows";
+  EXPECT_EQ(faces_of_prism(8, {.round_step_max = 46 * degree}), round);
+}
+
+TEST(Recover, LeavesARingOfEightSidesItsPlanes) {
   Part part;
   part.mesh = ring_mesh(0.05, 0.01, 8, 4);
   recover_brep(part);
@@ -205,38 +252,6 @@ TEST(Recover, CallsOtherWhatFitsNothing) {
 }
 
 // --- the same every time --------------------------------------------------------------------------------------------
-
-/// Vertices and triangles in another order, triangles begun at other corners.
-TriangleMesh shuffled(const TriangleMesh& mesh, std::uint64_t seed) {
-  const RandomStream random(seed, "shuffle");
-  std::uint64_t drawn = 0;
-  const auto below = [&](std::size_t n) {
-    return static_cast<std::size_t>(random.uniform(drawn++) * static_cast<double>(n));
-  };
-  std::vector<std::uint32_t> number(mesh.vertices.size());
-  for (std::uint32_t i = 0; i < number.size(); ++i) number[i] = i;
-  for (std::size_t i = number.size(); i > 1; --i) std::swap(number[i - 1], number[below(i)]);
-  TriangleMesh result;
-  result.vertices.resize(mesh.vertices.size());
-  for (std::size_t i = 0; i < number.size(); ++i) result.vertices[number[i]] = mesh.vertices[i];
-  for (const auto& [a, b, c] : mesh.triangles) {
-    std::array<std::uint32_t, 3> t = {number[a], number[b], number[c]};
-    std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(below(3)), t.end());
-    result.triangles.push_back(t);
-  }
-  for (std::size_t i = result.triangles.size(); i > 1; --i) {
-    std::swap(result.triangles[i - 1], result.triangles[below(i)]);
-  }
-  return result;
-}
-
-/// All numbers of faces and edges.
-std::vector<std::byte> bytes_of(Part part) {
-  part.mesh = {};
-  std::vector<std::byte> bytes;
-  for (const NamedArray& table : to_tables(part)) bytes.insert(bytes.end(), table.bytes.begin(), table.bytes.end());
-  return bytes;
-}
 
 TEST(Recover, DoesNotDependOnTheOrderOfTriangles) {
   const Solid pot = make(Kind::difference, make(Kind::sphere, {0.04}), make(Kind::tube, {0.02, 0.012, 0.1}));

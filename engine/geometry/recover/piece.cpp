@@ -13,7 +13,7 @@ namespace {
 constexpr double kNearlyTangent = 0.9;    // cosine
 constexpr double kCovers = 0.5;           // of a triangle's area, in the surface's coordinates
 constexpr double kQuarterOfATube = -0.2;  // cosine: a fan at most spans a fillet
-constexpr double kOnAxis = 4;             // tolerances
+constexpr double kNoise = 4;              // tolerances: nearer to an axis no direction, lower than that no area
 constexpr double kRim = 30;               // tolerances: of drawings, against that of numbers
 
 }  // namespace
@@ -34,7 +34,7 @@ struct Piece::Corners {
       rho[i] = f.rho;
       height[i] = f.height;
       tube[i] = Eigen::Vector2d(f.rho - s.a, f.height).normalized();
-      on_axis[i] = f.rho <= kOnAxis * tolerance;
+      on_axis[i] = f.rho <= kNoise * tolerance;
     }
     for (std::size_t i = 0; i < 3; ++i) {  // an apex is in every direction: in that of the others
       if (!on_axis[i]) continue;
@@ -78,7 +78,8 @@ bool Piece::is_regular(std::uint32_t t) const {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
     if (c.gradient[i].dot(c.gradient[k]) < limits_.cos_step) return false;
-    if (surface_.kind != Kind::sphere && surface_.kind != Kind::plane && c.outward[i].dot(c.outward[k]) < limits_.cos_step)
+    if (surface_.kind != Kind::sphere && surface_.kind != Kind::plane &&
+        c.outward[i].dot(c.outward[k]) < limits_.cos_step)
       return false;
     if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < limits_.cos_step) return false;
   }
@@ -94,7 +95,8 @@ bool Piece::is_possible(std::uint32_t t) const {
   const bool is_sphere = surface_.kind == Kind::sphere;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
-    if ((is_sphere ? c.gradient : c.outward)[i].dot((is_sphere ? c.gradient : c.outward)[k]) < limits_.cos_step) return false;
+    if ((is_sphere ? c.gradient : c.outward)[i].dot((is_sphere ? c.gradient : c.outward)[k]) < limits_.cos_step)
+      return false;
     if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < kQuarterOfATube) return false;
   }
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
@@ -103,7 +105,7 @@ bool Piece::is_possible(std::uint32_t t) const {
     return (limits_.inside_out ? -along : along) > kCovers;
   }
   const Cover cover = cover_of(c);
-  return cover.area > kOnAxis * limits_.tolerance * cover.length;
+  return cover.area > kNoise * limits_.tolerance * cover.length;
 }
 
 }  // namespace verisim::recover

@@ -167,7 +167,9 @@ class Bounds {
     double here = 0, beyond = 0;
     for (const Vector3d& p : points_) {
       const Profile f = profile_of(p, s.center, s.direction);
-      const auto distance = [&](double rho) { return std::abs(std::hypot(rho - s.major_radius, f.height) - s.minor_radius); };
+      const auto distance = [&](double rho) {
+        return std::abs(std::hypot(rho - s.major_radius, f.height) - s.minor_radius);
+      };
       here += distance(f.rho);
       beyond += distance(-f.rho);
     }

@@ -2,7 +2,8 @@
 //
 // From every facet, the largest first, surfaces of each kind are fitted to what lies around it, grown over the mesh as
 // long as vertices lie on them, fitted again to all that they cover, and grown again. The one that covers most is
-// taken; of equals the simplest. What is flat and borders as a plane does becomes a plane. What fits nothing stays.
+// taken; of equals the simplest. What is flat and borders as a plane does becomes a plane. Then second thoughts (what
+// a larger surface explains as well, what is a patch of a free form); what fits nothing stays.
 #pragma once
 
 #include <vector>

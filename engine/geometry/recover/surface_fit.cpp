@@ -16,8 +16,8 @@ constexpr double kMostDamping = 1e6;
 constexpr double kSmallestDamping = 1e-13;  // holds the directions in which a kind does not change
 constexpr std::size_t kPointsOfAFit = 64;
 constexpr int kFirst = 2;
-constexpr double kFast = 0.5;      // after the first iterations: what fits is near, or gets there fast
-constexpr double kSettled = 0.99;  // a step that lowers the cost by less is the last
+constexpr double kFast = 0.5;               // after the first iterations: what fits is near, or gets there fast
+constexpr double kSettled = 0.99;           // a step that lowers the cost by less is the last
 constexpr double kNear = 30, kFine = 1e-3;  // tolerances, root of the mean square
 constexpr double kSingular = 1e-12, kNearlySingular = 1e-9;
 constexpr double kNarrowestCone = 0.005, kWidestCone = 200;  // tangents of half angles

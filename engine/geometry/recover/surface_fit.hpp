@@ -19,7 +19,9 @@ struct Sample {
   std::vector<Vector3d> normals;  ///< … and their normals
 };
 
-/// The surface of this kind that is nearest to the points, however far that is; none if they do not determine one.
+/// The surface of this kind that is nearest to the points; none if they do not determine one. What stays many
+/// tolerances away [m] is given up early. A torus of negative major radius is the part of a tube that has passed the
+/// axis.
 [[nodiscard]] std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance);
 /// The same from a first guess.
 [[nodiscard]] std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points,

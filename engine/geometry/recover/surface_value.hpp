@@ -21,7 +21,7 @@ struct SurfaceValue {
   Kind kind = Kind::plane;
   Vector3d point = Vector3d::Zero();
   Vector3d axis = Vector3d::UnitZ();
-  double a = 0;  ///< cylinder, sphere: radius; cone: radius at `point`; torus: major radius
+  double a = 0;  ///< cylinder, sphere: radius; cone: radius at `point`; torus: major radius, < 0 beyond the axis
   double b = 0;  ///< cone: tangent of the half angle, of either sign; torus: minor radius
 
   /// None for a surface of another kind.
