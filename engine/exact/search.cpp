@@ -368,9 +368,15 @@ bool Search::admit(const PlacedFeature& placed, std::uint32_t face, Candidate& c
     const ExactEdge& edge = base_.edges[e];
     const std::uint32_t other = across(edge, face);
     if (edge.fold == Fold::smooth && is_beyond(edge, face, foot)) return false;
-    if (edge.fold != Fold::convex) continue;
+    if (edge.fold == Fold::smooth) continue;
     const SurfaceAt there = base_.faces[other].surface->at(c.p);
-    if (!edge.speaks_for(c.p, there.distance) || decides(c.p, c.at, there, face < other)) continue;
+    if (!edge.speaks_for(c.p, there.distance)) continue;
+    if (edge.fold == Fold::concave) {
+      // Behind the face across: where the wall there is thin, a place outside of the body on its far side.
+      if (there.distance < -f_.margin) return false;
+      continue;
+    }
+    if (decides(c.p, c.at, there, face < other)) continue;
     return face < other && cross_edge(placed, face, other, c);
   }
   return true;

@@ -126,5 +126,25 @@ TEST(CornerOverAPlane, IsAsFarAwayAsItsHeight) {
   }
 }
 
+Solid ring_shape(double outer, double inner, double height) {
+  return combine(Kind::difference, make(Kind::cylinder, {outer, height}), make(Kind::cylinder, {inner, 2 * height}));
+}
+
+// A bearing's outer ring with a groove inside, 9 um of clearance in its housing. Where the ring is as high as here, the
+// groove's upper side is level with the housing's top, 3.7 mm away on the other side of a wall of 2.7 mm: samples that
+// are farther apart than the wall is thick must not take the one for the other.
+TEST(GrooveInARing, IsNotReachedThroughTheRing) {
+  const Solid groove = make(Kind::cylinder, {0.020766, 0.0091});
+  const Solid ring = combine(Kind::difference, ring_shape(0.02349725, 0.01925, 0.014), groove);
+  const Solid lead =
+      placed(make(Kind::cone, {0.02350625, 0.02450625, 0.001}), {{0, 0, 0.0065}, Quaterniond::Identity()});
+  const Solid housing = combine(Kind::difference, ring_shape(0.032, 0.02350625, 0.014), lead);
+  for (const double spacing : {0.001, 0.002, 0.003, 0.005}) {
+    SCOPED_TRACE(spacing);
+    Pair pair(housing, ring, spacing);
+    EXPECT_NEAR(pair.gap_at({{0, 0, 0.00245 - 1e-5}, Quaterniond::Identity()}, kMargin), 9e-6, kRounding);
+  }
+}
+
 }  // namespace
 }  // namespace verisim::exact::test
