@@ -1,4 +1,4 @@
-// Two doubles or four floats computed at once, with the compiler's own vectors: operators act on each lane by itself
+// Four floats computed at once, with the compiler's own vectors: operators act on each lane by itself
 // and round as one number does, so the bits are those of a plain loop. For short loops outside the contact query.
 #pragma once
 
@@ -7,7 +7,6 @@
 namespace verisim {
 
 using Float4 [[gnu::vector_size(16)]] = float;
-using Double2 [[gnu::vector_size(16)]] = double;
 
 /// Four neighbours of a column. p need not be aligned.
 [[nodiscard]] inline Float4 load4(const float* p) {
@@ -17,15 +16,6 @@ using Double2 [[gnu::vector_size(16)]] = double;
 }
 inline void store4(Float4 lanes, float* p) {
   std::memcpy(p, &lanes, sizeof lanes);
-}
-
-/// Two neighbours of a column of floats, as doubles; and back, rounded.
-[[nodiscard]] inline Double2 load2(const float* p) {
-  return Double2{double{p[0]}, double{p[1]}};
-}
-inline void store2(Double2 lanes, float* p) {
-  p[0] = static_cast<float>(lanes[0]);
-  p[1] = static_cast<float>(lanes[1]);
 }
 
 }  // namespace verisim

@@ -58,13 +58,14 @@ Misalignment of_axes(const Constraint& c, const Pose& X_AB) {
   const double low = std::max(-outer.half_length, center - reach);
   const double high = std::min(outer.half_length, center + reach);
   m.engaged = std::max(0.0, high - low);
+  m.mating = 2 * std::min(outer.half_length, inner.half_length);
   const double middle = std::clamp((low + high) / 2, -outer.half_length, outer.half_length);
   m.offset = distance_to(inner, outer.point + middle * outer.direction);
   m.play = std::max(0.0, c.clearance);
 
   if (c.field == NormalField::about_ring) {
     m.offset = m.distance = (inner.point - outer.point).norm();
-    m.engaged = 2 * c.side(hole).radius;
+    m.engaged = m.mating = 2 * c.side(hole).radius;
   }
   if (c.field == NormalField::about_cone) {
     const bool guide_is_hole = c.guide == hole;
@@ -156,6 +157,13 @@ double miss(const Constraint& c, const Misalignment& m, double voxel_size) {
   return (m.offset + m.engaged / 2 * tangent - m.play) / voxel_size;
 }
 
+/// How far a pin has come into its hole: 0 before its end has passed the rim, 1 once a voxel of it is in (of a side
+/// shorter than that: all of it).
+double engagement(const Constraint& c, const Misalignment& m, double voxel_size) {
+  if (c.pairing != Pairing::axis_axis) return 1;
+  return std::min(1.0, m.engaged / std::min(voxel_size, m.mating));
+}
+
 /// d_c of eq. 8.2: the clearance where there is a fit, else the voxel size.
 double distance_scale(const Constraint& c, const Misalignment& m, double voxel_size) {
   const bool is_fit = c.pin != Side::neither && c.field != NormalField::about_cone;
@@ -188,7 +196,8 @@ double alignment(AlignmentMeasure measure, const Constraint& constraint, const M
   if (!std::isfinite(m.offset + m.sine + m.cosine)) return 0;
   double alpha = 0;
   if (measure == AlignmentMeasure::by_type) {
-    alpha = 1 - std::max(0.0, miss(constraint, m, scales.voxel_size));
+    alpha = std::max(0.0, 1 - std::max(0.0, miss(constraint, m, scales.voxel_size))) *
+            engagement(constraint, m, scales.voxel_size);
   } else {
     const double theta = pinned::atan2(m.sine, m.cosine);
     double angle_term = theta;
@@ -200,6 +209,11 @@ double alignment(AlignmentMeasure measure, const Constraint& constraint, const M
     alpha = 0.5 * pinned::exp(-angle_term) + 0.5 * pinned::exp(-distance_term);
   }
   return std::clamp(alpha, 0.0, 1.0);
+}
+
+double wholly_beside(const Constraint& round, const Misalignment& m, const AlignmentScales& scales) {
+  const double apart = m.offset - round.a.radius - round.b.radius;
+  return std::isfinite(apart) ? std::clamp(apart / scales.voxel_size, 0.0, 1.0) : 0;
 }
 
 }  // namespace verisim

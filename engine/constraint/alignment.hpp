@@ -15,7 +15,9 @@
 //       alpha = 1 - max(0, x) / s, at least 0.
 //   axes     x = offset + (engaged / 2) tan(theta) - clearance. While it is below 0 the pin stands freely in its hole
 //            (x = 0 is the two-point contact of ORACLES section 2 to first order): nothing is misaligned, alpha = 1.
-//            A degree costs a long pin much and a short one little.
+//            A degree costs a long pin much and a short one little. All of this times engaged / s, at most 1 (s: no
+//            more than the shorter side): before the pin's end has passed the rim no wall faces another, and a pin that
+//            stands on the rim a little beside its hole would lose the push that holds it.
 //   centres  x = distance - clearance. Angles mean nothing: a ball is round.
 //   ball on an axis: x = distance from the axis, and past the tube's end, - clearance.
 //   planes, and edges or rollers on planes: a plate that is tilted still slides; what a tilt spoils is which way the
@@ -48,6 +50,7 @@ struct Misalignment {
   double offset = 0;    ///< the same in the middle of the engaged stretch [m]
   double engaged = 0;   ///< length over which the two lie side by side [m]
   double play = 0;      ///< what the fit allows at this place [m], >= 0
+  double mating = 0;    ///< the most that can be engaged: length of the shorter side [m]
 };
 
 /// @param X_AB places body B in A. Pure; about 50 ns. Zero and NaN lengths cannot occur (entities.hpp); a pose that is
@@ -57,5 +60,9 @@ struct Misalignment {
 /// alpha, from 0 to 1; 0 if anything is not finite. Cost: `by_type` a division, the others two pinned exp and an atan2.
 [[nodiscard]] double alignment(AlignmentMeasure measure, const Constraint& constraint, const Misalignment& m,
                                const AlignmentScales& scales);
+
+/// Does a pin stand wholly beside its hole? From 0, while its end covers any part of the hole (the axes are nearer than
+/// both radii together), to 1, a voxel farther out. Whatever the measure; 0 if not finite.  @pre `round` is axis_axis
+[[nodiscard]] double wholly_beside(const Constraint& round, const Misalignment& m, const AlignmentScales& scales);
 
 }  // namespace verisim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/lanes.hpp"
+#include "engine/constraint/restore_run.hpp"
 
 namespace verisim {
 namespace {
@@ -20,84 +20,6 @@ void set_force(const ContactColumns& c, std::uint32_t i, const Vector3d& f) {
   c.fx[i] = static_cast<float>(f.x());
   c.fy[i] = static_cast<float>(f.y());
   c.fz[i] = static_cast<float>(f.z());
-}
-
-struct Run {
-  std::uint32_t begin, end;
-};
-
-/// Vectors of two contacts, component by component.
-struct Two {
-  Double2 x, y, z;
-};
-Double2 dot(const Two& a, const Two& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);  // as Eigen sums three
-}
-Two both(const Vector3d& v) {
-  return {Double2{v.x(), v.x()}, Double2{v.y(), v.y()}, Double2{v.z(), v.z()}};
-}
-
-/// normal_at() of two contacts. Only for fields that need no square root.
-template <NormalField field>
-Two normals_at(const ActiveConstraint& c, const Two& p) {
-  if constexpr (field == NormalField::constant) return both(c.direction);
-  const Two point = both(c.point);
-  const Two q = {p.x - point.x, p.y - point.y, p.z - point.z};
-  if constexpr (field == NormalField::about_point) return q;
-  const Two v = both(c.direction);
-  const Double2 height = dot(v, q);
-  return {q.x - height * v.x, q.y - height * v.y, q.z - height * v.z};
-}
-
-/// restore() of contacts i and i + 1.
-template <NormalField field, bool pushes_only>
-void restore_two(const ContactColumns& c, std::uint32_t i, const ActiveConstraint& active) {
-  const Two n = normals_at<field>(active, {load2(c.x + i), load2(c.y + i), load2(c.z + i)});
-  const Two f = {load2(c.fx + i), load2(c.fy + i), load2(c.fz + i)};
-  const Double2 zero = {0, 0};
-  const Double2 one = {1, 1};
-  const Double2 n_squared = dot(n, n);
-  const Double2 f_along = dot(f, n);
-  const auto has_none = n_squared == zero;
-  Double2 part = active.alpha * (f_along / (has_none ? one : n_squared));
-  const Double2 kept = has_none ? one : one - active.alpha;
-  if constexpr (pushes_only) part = f_along >= zero ? zero : part;
-  store2(kept * f.x + part * n.x, c.fx + i);
-  store2(kept * f.y + part * n.y, c.fy + i);
-  store2(kept * f.z + part * n.z, c.fz + i);
-}
-
-/// restore() of restoration.hpp over a run of contacts, for one kind of field: nothing is decided inside the loop.
-template <NormalField field, bool pushes_only>
-void restore_run(const ContactColumns& c, Run run, ActiveConstraint active) {
-  active.field = field;
-  active.point -= c.origin;
-  std::uint32_t i = run.begin;
-  if constexpr (field != NormalField::about_cone && field != NormalField::about_ring) {
-    for (; i + 1 < run.end; i += 2) restore_two<field, pushes_only>(c, i, active);
-  }
-  for (; i < run.end; ++i) {
-    const Vector3d n = normal_at(active, Vector3d(c.x[i], c.y[i], c.z[i]));
-    set_force(c, i, restore_along(n, force_of(c, i), active.alpha, pushes_only));
-  }
-}
-
-void restore_run(const ContactColumns& c, Run run, const ActiveConstraint& active) {
-  const auto by_sense = [&]<NormalField field>() {
-    return active.pushes_only ? restore_run<field, true>(c, run, active) : restore_run<field, false>(c, run, active);
-  };
-  switch (active.field) {
-    case NormalField::constant:
-      return by_sense.operator()<NormalField::constant>();
-    case NormalField::about_line:
-      return by_sense.operator()<NormalField::about_line>();
-    case NormalField::about_point:
-      return by_sense.operator()<NormalField::about_point>();
-    case NormalField::about_cone:
-      return by_sense.operator()<NormalField::about_cone>();
-    case NormalField::about_ring:
-      return by_sense.operator()<NormalField::about_ring>();
-  }
 }
 
 }  // namespace
@@ -121,29 +43,28 @@ const ActiveConstraint& ConstraintLink::active(std::uint32_t constraint) {
   InFrame& state = in_frame_[constraint];
   if (state.stamp == stamp_) return state.active;
   const Constraint& c = memo_.constraint(constraint);
-  const double alpha = alignment(options_.measure, c, misalignment(c, X_AB_), options_.scales);
+  double alpha = alignment(options_.measure, c, misalignment(c, X_AB_), options_.scales);
+  for (const std::uint16_t number : memo_.hands_over_to(constraint)) {
+    const Constraint& round = memo_.constraint(number);
+    alpha *= wholly_beside(round, misalignment(round, X_AB_), options_.scales);
+  }
   state = {.stamp = stamp_, .engaged = 0, .active = activate(c, X_AB_, alpha)};
   return state.active;
 }
 
 void ConstraintLink::fill(Holding& h, const Candidates& found) {
-  std::array<double, Candidates::kMax> alpha = {};
-  for (std::size_t i = 0; i < found.count; ++i) alpha[i] = active(found.constraint[i]).alpha;
   for (std::size_t i = 0; i < found.count; ++i) {
-    double left = alpha[i];
-    for (std::size_t j = 0; j < found.count; ++j) {
-      if ((found.yields_to[i] >> j & 1U) != 0) left *= 1 - alpha[j];
-    }
-    if (!(left > kAlphaLeast)) continue;
+    const double alpha = active(found.constraint[i]).alpha;
+    if (!(alpha > kAlphaLeast)) continue;
     std::size_t place = h.count;
     if (place == kHoldingMax) {  // three normals span everything: of more, the three best aligned
       place = static_cast<std::size_t>(std::min_element(h.alpha.begin(), h.alpha.end()) - h.alpha.begin());
-      if (h.alpha[place] >= left) continue;
+      if (h.alpha[place] >= alpha) continue;
     } else {
       ++h.count;
     }
     h.constraint[place] = found.constraint[i];
-    h.alpha[place] = left;
+    h.alpha[place] = alpha;
     h.active[place] = &in_frame_[found.constraint[i]].active;
   }
 }
@@ -176,7 +97,9 @@ void ConstraintLink::restore_under(const Holding& h, const ContactColumns& c, st
   if (h.count == 1) {
     ActiveConstraint only = *h.active[0];
     only.alpha = h.alpha[0];
-    return restore_run(c, {begin, end}, only);
+    only.point -= c.origin;
+    return restore_run({c.x + begin, c.y + begin, c.z + begin, c.fx + begin, c.fy + begin, c.fz + begin, end - begin},
+                       only);
   }
   for (std::uint32_t i = begin; i < end; ++i) {
     set_force(c, i,

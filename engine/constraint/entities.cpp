@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
@@ -108,6 +109,11 @@ Role role_beside(const Edge& edge, std::span<const Face> faces) {
   return role;
 }
 
+bool is_round(const Entity& e) {
+  return std::holds_alternative<Bounded<Cylinder>>(e) || std::holds_alternative<Bounded<Cone>>(e) ||
+         std::holds_alternative<Bounded<Circle>>(e);
+}
+
 }  // namespace
 
 Entity entity_of(const Face& face) {
@@ -158,6 +164,27 @@ void EntitySets::add(std::span<const std::uint32_t> set, std::size_t sets) {
     }
     numbers_.push_back(number);
   }
+}
+
+void EntitySets::find_rounds() {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::size_t id = 0; id < size(); ++id) {
+    const auto members = set(static_cast<FeatureSetId>(id));
+    for (const std::uint32_t plane : members) {
+      if (!std::holds_alternative<Bounded<Plane>>(entities_[plane])) continue;
+      for (const std::uint32_t other : members) {
+        if (is_round(entities_[other])) pairs.emplace_back(plane, other);
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  first_round_.assign(entities_.size() + 1, 0);
+  for (const auto& [plane, round] : pairs) {
+    ++first_round_[plane + 1U];
+    rounds_.push_back(round);
+  }
+  std::partial_sum(first_round_.begin(), first_round_.end(), first_round_.begin());
 }
 
 }  // namespace verisim

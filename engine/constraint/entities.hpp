@@ -65,6 +65,7 @@ class EntitySets {
     first_.clear();
     for (std::size_t id = 0; id < count; ++id) add(sets[static_cast<FeatureSetId>(id)], count);
     first_.push_back(static_cast<std::uint32_t>(numbers_.size()));
+    find_rounds();
   }
 
   [[nodiscard]] std::size_t size() const { return first_.size() - 1; }  ///< sets, the empty one included
@@ -75,14 +76,22 @@ class EntitySets {
     if (id >= size()) return {};
     return {numbers_.data() + first_[id], first_[id + 1U] - first_[id]};
   }
+  /// What may bound a plane: cylinders, cones and circles that share a set with it, ascending. Of all else: nothing.
+  [[nodiscard]] std::span<const std::uint32_t> rounds_at(std::uint32_t plane) const {
+    if (plane + 1U >= first_round_.size()) return {};
+    return {rounds_.data() + first_round_[plane], first_round_[plane + 1U] - first_round_[plane]};
+  }
 
  private:
   [[nodiscard]] static std::vector<Entity> entities_of(std::span<const Face> faces, std::span<const Edge> edges);
   void add(std::span<const std::uint32_t> set, std::size_t sets);
+  void find_rounds();
 
   std::vector<Entity> entities_;
   std::vector<std::uint32_t> first_ = {0, 0};  ///< (sets + 1) where each set begins in numbers_
   std::vector<std::uint32_t> numbers_;         ///< entity numbers, set after set
+  std::vector<std::uint32_t> first_round_;     ///< (entities + 1) where each plane's rounds begin in rounds_
+  std::vector<std::uint32_t> rounds_;          ///< entity numbers, plane after plane
 };
 
 }  // namespace verisim

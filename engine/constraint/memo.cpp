@@ -35,7 +35,9 @@ ConstraintMemo::ConstraintMemo(const EntitySets& a, const EntitySets& b, Reducti
       pairs_(std::min(limits.pairs, a.size() * b.size())),
       known_(std::min(8 * limits.constraints, a.entities().size() * b.entities().size())),
       candidates_(pairs_.capacity() + 1),
-      constraints_(std::min({limits.constraints, a.entities().size() * b.entities().size(), std::size_t{65535}})) {}
+      constraints_(std::min({limits.constraints, a.entities().size() * b.entities().size(), std::size_t{65535}})),
+      rounds_of_(constraints_.size()),
+      rounds_(2 * constraints_.size()) {}
 
 std::uint32_t ConstraintMemo::recognize_sets(FeatureSetId a, FeatureSetId b) {
   const Candidates found = candidates_of(a, b);
@@ -68,12 +70,6 @@ Candidates ConstraintMemo::candidates_of(FeatureSetId a, FeatureSetId b) {
     if (recognized != 1) found.count = 0;
     return found;
   }
-  for (std::size_t i = 0; i < found.count; ++i) {
-    for (std::size_t j = 0; j < found.count; ++j) {
-      if (!hands_over(constraints_[found.constraint[i]], constraints_[found.constraint[j]])) continue;
-      found.yields_to[i] = static_cast<std::uint8_t>(found.yields_to[i] | (1U << j));
-    }
-  }
   return found;
 }
 
@@ -102,7 +98,34 @@ std::uint32_t ConstraintMemo::number_of(std::uint32_t entity_a, std::uint32_t en
     }
   }
   if (known_.size() < known_.capacity()) known_.insert(entity_a, entity_b, number);
+  if (number != kNone && c.kind == ConstraintKind::planar && reduction_ == Reduction::common_freedom) {
+    find_rounds(number, entity_a, entity_b);
+  }
   return number;
+}
+
+/// What the round faces and rims at both planes are to each other.
+void ConstraintMemo::find_rounds(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b) {
+  Stretch rounds{rounds_known_, 0};
+  for (const std::uint32_t round_a : a_->rounds_at(entity_a)) {
+    for (const std::uint32_t round_b : b_->rounds_at(entity_b)) {
+      const std::uint32_t number = number_of(round_a, round_b);
+      if (number != kNone && hands_over(constraints_[planar], constraints_[number])) add_round(rounds, number);
+    }
+  }
+  rounds_of_[planar] = rounds;
+}
+
+void ConstraintMemo::add_round(Stretch& rounds, std::uint32_t round) {
+  for (std::uint32_t i = rounds.first; i < rounds_known_; ++i) {
+    if (same_axes(constraints_[rounds_[i]], constraints_[round])) return;
+  }
+  if (rounds_known_ == rounds_.size()) {
+    ++counts_.overflows;
+    return;
+  }
+  rounds_[rounds_known_++] = static_cast<std::uint16_t>(round);
+  ++rounds.count;
 }
 
 }  // namespace verisim

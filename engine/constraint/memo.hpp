@@ -40,7 +40,6 @@ struct MemoCounts {
 struct Candidates {
   static constexpr std::size_t kMax = 8;  ///< of different constraints at one pair of voxels; the first ones stay
   std::array<std::uint16_t, kMax> constraint = {};
-  std::array<std::uint8_t, kMax> yields_to = {};  ///< bit j: hands over to candidate j (reduction.hpp)
   std::uint8_t count = 0;
 };
 
@@ -61,6 +60,11 @@ class ConstraintMemo {
 
   [[nodiscard]] const Candidates& candidates(std::uint32_t number) const { return candidates_[number]; }
   [[nodiscard]] const Constraint& constraint(std::uint32_t number) const { return constraints_[number]; }
+  /// Numbers of the round constraints that this one, if it is planar, hands over to (reduction.hpp): one for each pair
+  /// of axes. None under `exactly_one`.
+  [[nodiscard]] std::span<const std::uint16_t> hands_over_to(std::uint32_t number) const {
+    return {rounds_.data() + rounds_of_[number].first, rounds_of_[number].count};
+  }
   [[nodiscard]] const MemoCounts& counts() const { return counts_; }
   void count_hits(std::uint64_t more) { counts_.hits += more; }  ///< look-ups that the caller could spare
 
@@ -69,10 +73,15 @@ class ConstraintMemo {
   [[nodiscard]] std::size_t constraints_known() const { return constraints_known_; }
 
  private:
+  struct Stretch {
+    std::uint32_t first = 0, count = 0;
+  };
   std::uint32_t recognize_sets(FeatureSetId a, FeatureSetId b);
   Candidates candidates_of(FeatureSetId a, FeatureSetId b);
   void add(Candidates& found, std::uint32_t constraint) const;
   std::uint32_t number_of(std::uint32_t entity_a, std::uint32_t entity_b);
+  void find_rounds(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b);
+  void add_round(Stretch& rounds, std::uint32_t round);
 
   const EntitySets* a_;
   const EntitySets* b_;
@@ -83,6 +92,9 @@ class ConstraintMemo {
   std::vector<Candidates> candidates_;  ///< one more than pairs_ holds: the last is for what finds no room
   std::vector<Constraint> constraints_;
   std::size_t constraints_known_ = 0;
+  std::vector<Stretch> rounds_of_;     ///< by constraint: where those that it hands over to stand in rounds_
+  std::vector<std::uint16_t> rounds_;  ///< numbers of constraints
+  std::uint32_t rounds_known_ = 0;
   MemoCounts counts_;
 };
 

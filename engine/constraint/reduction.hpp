@@ -18,10 +18,14 @@
 //
 //   Merging: two constraints about the same axis on both bodies (the wall of a hole and its rim, against the same pin)
 //   are one; the one whose entities have the higher dimension stays.
-//   Handing over: a convex rim against a convex rim (a pin's flat end against the face around a hole) touches either
-//   wall to wall or end to face, never both; the recognized axes say which: the planar constraint's alpha is multiplied
-//   by 1 - alpha of the round one. So a pin that stands inside the clearance is not held by the face around it, and one
-//   that stands beside it is.
+//   Handing over: a pin's flat end and the face around its hole mate as planes only where the pin stands wholly beside
+//   the hole. While the end covers any part of the hole the two rims cross. What touches there is edge on edge: its
+//   normal lies anywhere between end and side, as they tilt, and leans towards the hole's axis. To hold such a contact
+//   to the planes' normal takes away just the part of the force that guides the pin in, and the pin glides off and
+//   falls over. So the planar constraint's alpha is multiplied by wholly_beside() of the round one (alignment.hpp), and
+//   until then the voxels' answer stands. This is asked of the two bodies' faces and not of the two voxels' sets: a
+//   voxel beside the rim does not know of the hole. Only for convex rims on both bodies: a collar that hangs on a rim
+//   touches end to face and wall to wall at once.
 //   Degrees: alpha_i is read as the probability that constraint i holds, independent of the others; f' is the
 //   expectation over all subsets S of the force with the span of S kept:  f' = sum_S  w_S P_S f,  P_(empty) = 1.
 //   With one constraint this is eq. 8.8 and 8.9 again; it is continuous in every alpha and never lengthens f.

@@ -1,5 +1,7 @@
 #include "engine/simulation/hybrid_link.hpp"
 
+#include <algorithm>
+
 #include "engine/base/lanes.hpp"
 #include "engine/voxel/association.hpp"
 
@@ -20,6 +22,23 @@ std::vector<bool> precisely_known(const BodyFeatures& features) {
   return known;
 }
 
+namespace {
+
+/// to[i] = of[at[i]]; 0 where nothing is associated. Written so that nothing but the columns is read in the loop.
+void fetch(const std::vector<std::uint32_t>& at, std::uint32_t count, const std::vector<FeatureSetId>& of,
+           std::vector<FeatureSetId>& to) {
+  if (of.empty()) {
+    std::fill_n(to.begin(), count, FeatureSetId{0});
+    return;
+  }
+  const std::uint32_t* const from = at.data();
+  const FeatureSetId* const sets = of.data();
+  FeatureSetId* const out = to.data();
+  for (std::uint32_t i = 0; i < count; ++i) out[i] = sets[from[i]];
+}
+
+}  // namespace
+
 HybridLink::HybridLink(const Side& map, const Side& points, const ConstraintOptions& options)
     : map_(map),
       points_(points),
@@ -35,8 +54,12 @@ HybridLink::HybridLink(const Side& map, const Side& points, const ConstraintOpti
 ContactColumns HybridLink::columns_of(const ContactList& contacts) {
   const VoxelBody& map = *map_.voxels;
   const Pointshell& shell = points_.voxels->shell;
-  for (std::uint32_t i = 0; i < contacts.size; ++i) set_a_[i] = feature_at(map, contacts.slot[i]);
-  for (std::uint32_t i = 0; i < contacts.size; ++i) set_b_[i] = feature_of_point(shell, contacts.point[i]);
+  fetch(contacts.slot, contacts.size, map.slot_sets, set_a_);
+  if (shell.voxel.empty()) {
+    fetch(contacts.point, contacts.size, shell.features, set_b_);
+  } else {
+    for (std::uint32_t i = 0; i < contacts.size; ++i) set_b_[i] = feature_of_point(shell, contacts.point[i]);
+  }
   ContactColumns columns;
   columns.size = contacts.size;
   columns.x = contacts.x.data();

@@ -59,8 +59,15 @@ DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, con
   check(owner, n);
   const bool is_edge = std::holds_alternative<Edge>(entity);
   const auto next = static_cast<Place>(is_edge ? 2 * edges_.size() + 1 : 2 * faces_.size());
-  const Key key = {static_cast<double>(n.kind), n.point.x(),     n.point.y(), n.point.z(), n.direction.x(),
-                   n.direction.y(),             n.direction.z(), n.first,     n.second};
+  const Key key = {static_cast<double>(n.kind),
+                   n.point.x(),
+                   n.point.y(),
+                   n.point.z(),
+                   n.direction.x(),
+                   n.direction.y(),
+                   n.direction.z(),
+                   n.first,
+                   n.second};
   const auto [found, is_new] = places_.try_emplace(key, next);
   if (!is_new) return found->second;
   if (is_edge) {
@@ -104,13 +111,28 @@ void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d
   }
 }
 
-/// Widens the face's bounds to a voxel: along an axis all of it; around an axis everything is taken as covered.
-void DeclaredFeatures::extend(std::size_t face, const Vector3d& p, double half_side) {
+/// The circle in the set that lies on the cylinder, square to its axis; null if none does.
+const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const Place> set) const {
+  constexpr double kSame = 1e-9;  // m and rad: what was declared by the same numbers
+  for (const Place place : set) {
+    if (place % 2 == 0) continue;
+    const auto* circle = std::get_if<Circle>(&edges_[place / 2].curve);
+    if (circle == nullptr || std::abs(circle->radius - cylinder.radius) > kSame) continue;
+    if (circle->normal.cross(cylinder.direction).norm() > kSame) continue;
+    if ((circle->center - cylinder.point).cross(cylinder.direction).norm() <= kSame) return circle;
+  }
+  return nullptr;
+}
+
+/// Widens the face's bounds to a voxel: along an axis all of it, but up to the rim where the voxel has one; around an
+/// axis everything is taken as covered.
+void DeclaredFeatures::extend(std::size_t face, std::span<const Place> set, const Vector3d& p, double half_side) {
   Face& f = faces_[face];
-  const auto widen = [&](std::array<double, 2>& range, double at) {
-    range[0] = met_[face] ? std::min(range[0], at - half_side) : at - half_side;
-    range[1] = met_[face] ? std::max(range[1], at + half_side) : at + half_side;
+  const auto include = [&](std::array<double, 2>& range, double low, double high) {
+    range[0] = met_[face] ? std::min(range[0], low) : low;
+    range[1] = met_[face] ? std::max(range[1], high) : high;
   };
+  const auto widen = [&](std::array<double, 2>& range, double at) { include(range, at - half_side, at + half_side); };
   if (const auto* plane = std::get_if<Plane>(&f.surface)) {
     widen(f.u_range, (p - plane->point).dot(plane->x_axis));
     widen(f.v_range, (p - plane->point).dot(plane->normal.cross(plane->x_axis)));
@@ -118,7 +140,12 @@ void DeclaredFeatures::extend(std::size_t face, const Vector3d& p, double half_s
   }
   f.u_range = {0, 2 * pinned::kPi};
   if (const auto* cylinder = std::get_if<Cylinder>(&f.surface)) {
-    widen(f.v_range, (p - cylinder->point).dot(cylinder->direction));
+    const auto along = [&](const Vector3d& q) { return (q - cylinder->point).dot(cylinder->direction); };
+    if (const Circle* rim = rim_of(*cylinder, set)) {
+      include(f.v_range, along(rim->center), along(rim->center));
+    } else {
+      widen(f.v_range, along(p));
+    }
   } else if (const auto* cone = std::get_if<Cone>(&f.surface)) {
     widen(f.v_range, (p - cone->point).dot(cone->direction));
   } else if (std::holds_alternative<Sphere>(f.surface)) {
@@ -135,11 +162,12 @@ void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, Featur
   if (id == 0) return;
   const Pointshell& shell = body.shell;
   const Vector3d p = shell.reference + Vector3d(shell.x[voxel], shell.y[voxel], shell.z[voxel]);
-  for (const Place place : sets_[id]) {
+  const std::span<const Place> set = sets_[id];
+  for (const Place place : set) {
     if (place % 2 != 0) continue;
     const std::size_t face = place / 2;
     weigh(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
-    extend(face, p, 0.5 * body.voxmap.voxel_size);
+    extend(face, set, p, 0.5 * body.voxmap.voxel_size);
     met_[face] = true;
   }
 }

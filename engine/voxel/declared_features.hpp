@@ -6,7 +6,8 @@
 // on purpose). Declared sets have the first numbers, from 1 on, in the order in which they were added.
 //
 // Whether a round face is a hole need not be said: the inward normals of the voxels that get it tell, together. (A
-// plane's normal is as declared: out of the material.) A face's bounds are those of the voxels that have it.
+// plane's normal is as declared: out of the material.) A face's bounds are those of the voxels that have it; a
+// cylinder whose rim is in a voxel's set too ends there at the rim.
 #pragma once
 
 #include <array>
@@ -53,7 +54,8 @@ class DeclaredFeatures {
 
   [[nodiscard]] Place place_of(const std::string& owner, const Entity& entity);
   void weigh(std::size_t face, const Vector3d& p, const Vector3d& inward);
-  void extend(std::size_t face, const Vector3d& p, double half_side);
+  void extend(std::size_t face, std::span<const Place> set, const Vector3d& p, double half_side);
+  [[nodiscard]] const Circle* rim_of(const Cylinder& cylinder, std::span<const Place> set) const;
 
   std::vector<Face> faces_;
   std::vector<bool> met_;     // a voxel has the face

@@ -3,14 +3,16 @@ behaviour changed and why; VERISIM_GOLDEN=1 prints what is measured."""
 import os
 import unittest
 
+import h5py
+
 from program import turned_stl, ProgramTest, SHARED, SOURCE
 
 MODELS = os.path.join(SHARED, "models")
 
 
 class Scenes(ProgramTest):
-    def scene(self, name, *options):
-        run_file = self.path(name + ".h5")
+    def scene(self, name, *options, run_file=None):
+        run_file = self.path(run_file or name + ".h5")
         summary = self.run_json("run", os.path.join(SOURCE, "scenarios", name + ".lua"), "-o", run_file, *options)
         self.succeed("replay", run_file, "--verify")
         if os.environ.get("VERISIM_GOLDEN"):
@@ -25,6 +27,15 @@ class Scenes(ProgramTest):
         self.assertEqual(s["outcome"], "inserted")
         self.assertGreaterEqual(s["measures"]["passes"]["value"], 3)
         self.assertLess(s["max_penetration_m"], 0.0045)
+
+    def test_peg_in_hole_with_half_a_voxel_of_clearance(self):
+        """Every approach lands on the rim. What guides the pin in there must not be taken for friction: if it is, the
+        pin glides off and falls over."""
+        for seed in ["1", "4"]:
+            fit = ["--set", "clearance=mm(1)", "--set", "voxelsize=mm(2)", "--duration", "4", "--seed", seed]
+            off, restore = (self.scene("peg_in_hole", *fit, "--set", "hybrid=" + h) for h in ("off", "restore"))
+            self.assertEqual(restore["measures"]["passes"]["value"], off["measures"]["passes"]["value"], seed)
+            self.assertLess(restore["max_penetration_m"], 1.1 * off["max_penetration_m"], seed)
 
     def test_peg_in_hole_in_the_published_scripts_sizes(self):
         s = self.scene("peg_in_hole", "--set", "half=true", "--duration", "5")
@@ -71,11 +82,17 @@ class Scenes(ProgramTest):
         self.assertGreater(s["measures"]["head_known"]["value"], 0.99)
 
     def test_entities_declared_by_hand_do_what_those_of_the_solids_do(self):
-        by_hand, solid = (self.scene("declared", "--set", "by=" + by) for by in ("hand", "solid"))
+        by_hand, solid = (self.scene("declared", "--set", "by=" + by, run_file=by + ".h5") for by in ("hand", "solid"))
         self.assertEqual(by_hand["outcome"], "inserted")
         self.assertGreater(by_hand["constraints"]["cylindrical"], 1000)
-        for fact in ("constraints", "collision_frames", "state_hash"):
+        for fact in ("constraints", "collision_frames"):
             self.assertEqual(by_hand[fact], solid[fact], fact)
+        # The CAD kernel rounds a face's bounds to 3e-12 m; how far a pin is in depends on them.
+        poses = []
+        for s in (by_hand, solid):
+            with h5py.File(s["run_file"]) as file:
+                poses.append(file["/state/body/pin/pose"][:])
+        self.assertLess(abs(poses[0] - poses[1]).max(), 1e-6)
 
     def test_parts_of_bare_triangles_are_recognized_once_their_faces_are_recovered(self):
         self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -121,6 +122,28 @@ TEST(AlignmentByType, IsZeroForAPinBesideOrAcrossItsHole) {
   EXPECT_EQ(by_type(peg(), {{0.2, 0, 0}, Quaterniond::Identity()}), 0);
   EXPECT_EQ(by_type(peg(), tilted(90 * kDegree)), 0);
   EXPECT_GE(alpha(AlignmentMeasure::pavlik, peg(), {{0.2, 0, 0}, Quaterniond::Identity()}), 0.5);  // the published one
+}
+
+// Before its end has passed the rim a pin is in no hole, wherever it stands; a plate thinner than a voxel is passed
+// once the pin is through.
+TEST(AlignmentByType, OfAPinBeginsAtTheRimAndIsWholeAVoxelBehindIt) {
+  const auto deep = [](const Constraint& c, double rim, double depth) {
+    return by_type(c, {{0.002, 0, rim + 0.2 - depth}, Quaterniond::Identity()});
+  };
+  for (const double depth : {-0.1, -0.001, 0.0, 0.001, 0.002, 0.0045, 0.1}) {
+    EXPECT_NEAR(deep(peg(), 0.1, depth), std::clamp(depth / 0.0045, 0.0, 1.0), tolerance(1e-12)) << depth;
+    EXPECT_NEAR(deep(peg(0.070, 0.001), 0.001, depth), std::clamp(depth / 0.002, 0.0, 1.0), tolerance(1e-12)) << depth;
+  }
+}
+
+// A pin of 70 mm covers part of a hole of 75 mm up to 145 mm between their axes.
+TEST(WhollyBeside, BeginsWhereTheEndCoversNothingOfTheHole) {
+  const auto at = [](const Pose& X) { return wholly_beside(peg(), misalignment(peg(), X), {.voxel_size = 0.0045}); };
+  for (const double offset : {0.0, 0.005, 0.07, 0.1449, 0.146, 0.149, 0.15, 1.0}) {
+    EXPECT_NEAR(at({{offset, 0, 0.3}, Quaterniond::Identity()}), std::clamp((offset - 0.145) / 0.0045, 0.0, 1.0),
+                tolerance(1e-12));
+  }
+  EXPECT_EQ(at({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, Quaterniond::Identity()}), 0);
 }
 
 TEST(AlignmentByType, OfPlanesNeedsThemToFaceEachOther) {

@@ -81,21 +81,44 @@ TEST(ConstraintMemo, AtARimMergesWallAndRim) {
   EXPECT_EQ(memo.constraint(rim.constraint[1]).kind, ConstraintKind::other);
 }
 
-// End on top hands over to the fit if both rims are convex, and does not for a collar.
+/// How many fits the meeting of the two ends hands over to, found by way of one pair of voxels.
+std::size_t handed_over(const EntitySets& a, const EntitySets& b, FeatureSetId set_a, FeatureSetId set_b,
+                        Reduction reduction = Reduction::common_freedom) {
+  ConstraintMemo memo(a, b, reduction, {});
+  const Candidates found = memo.candidates(memo.look_up(set_a, set_b));
+  std::size_t fits = 0;
+  for (std::size_t i = 0; i < found.count; ++i) {
+    for (const std::uint16_t round : memo.hands_over_to(found.constraint[i])) {
+      EXPECT_EQ(memo.constraint(found.constraint[i]).kind, ConstraintKind::planar);
+      EXPECT_EQ(memo.constraint(round).kind, ConstraintKind::cylindrical);
+      ++fits;
+    }
+  }
+  return fits;
+}
+
+// End on top hands over to the fit, once, whether or not the two voxels know of it; a collar does not.
 TEST(ConstraintMemo, HandsOverBetweenConvexRimsOnly) {
   const EntitySets a = test::block_with_hole();
   const EntitySets straight = test::pin();
   const EntitySets collared = test::collared_pin();
-  for (const auto& [b, expected] : {std::pair(&straight, true), std::pair(&collared, false)}) {
-    ConstraintMemo memo(a, *b, Reduction::common_freedom, {});
-    const Candidates found = memo.candidates(memo.look_up(block::rim, pin::edge));
-    bool yields = false;
-    for (std::size_t i = 0; i < found.count; ++i) {
-      if (memo.constraint(found.constraint[i]).kind == ConstraintKind::planar)
-        yields = yields || found.yields_to[i] != 0;
+  for (const FeatureSetId set_a : {block::top, block::rim}) {
+    for (const FeatureSetId set_b : {pin::end, pin::edge}) {
+      EXPECT_EQ(handed_over(a, straight, set_a, set_b), 1U);
+      EXPECT_EQ(handed_over(a, collared, set_a, set_b), 0U);
     }
-    EXPECT_EQ(yields, expected);
   }
+  EXPECT_EQ(handed_over(a, straight, block::top, pin::end, Reduction::exactly_one), 0U);
+}
+
+// Two holes in one top: the pin's end may cover either.
+TEST(ConstraintMemo, HandsOverToEveryHoleThatFits) {
+  const Vector3d there(0.3, 0, 0);
+  const std::vector<Entity> plate = {test::plane(test::kZ, {0, 0, 0.1}), test::cylinder(0.075, /*hole=*/true),
+                                     test::cylinder(0.075, /*hole=*/true, 0.1, there),
+                                     test::cylinder(0.02, /*hole=*/true, 0.1, -there)};
+  const std::vector<std::vector<std::uint32_t>> sets = {{}, {0}, {0, 1}, {0, 2}, {0, 3}};
+  EXPECT_EQ(handed_over(EntitySets(plate, sets), test::pin(), 1, pin::end), 2U);
 }
 
 TEST(ConstraintMemo, DoesNotMindAnEntityThatTouchesNoVoxel) {

@@ -273,6 +273,27 @@ TEST(DeclaredFeatures, MakeTheFirstAddedSetNumberOne) {
   EXPECT_NEAR(body.features.face(0).v_range[1], 0.015, 0.0021);
 }
 
+// Known to a voxel without its rims, exactly with them.
+TEST(DeclaredFeatures, EndACylinderAtItsRims) {
+  const Part part = drilled_block();
+  const VoxelBody body = voxelize("block", part.mesh, {.voxel_size = 0.002});
+  const Vector3d z = Vector3d::UnitZ();
+  DeclaredFeatures declared;
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; ++i) {
+    const Vector3d p = center(body, i);
+    if (std::abs(std::hypot(p.x(), p.y()) - 0.01) > 0.002) continue;
+    std::vector<DeclaredFeatures::Entity> set = {cylinder_face(0.01)};
+    Edge rim;
+    rim.curve = Circle{(p.z() < 0 ? -0.015 : 0.015) * z, z, Vector3d::UnitX(), 0.01};
+    Edge wider = rim;
+    std::get<Circle>(wider.curve).radius = 0.02;
+    if (std::abs(std::abs(p.z()) - 0.015) <= 0.001) set.insert(set.end(), {wider, rim});
+    declared.assign(body, i, declared.add("block", set));
+  }
+  EXPECT_NEAR(declared.faces()[0].v_range[0], -0.015, 1e-12);
+  EXPECT_NEAR(declared.faces()[0].v_range[1], 0.015, 1e-12);
+}
+
 TEST(DeclaredFeatures, ReplaceThePartsOwnInTheirVoxelsAndExtendItsFaces) {
   const Part part = drilled_block();
   const VoxelBody own = associated(part, 0.002);
