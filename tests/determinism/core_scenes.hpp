@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/simulation/declaring.hpp"
+#include "tests/determinism/turned.hpp"
 #include "tests/simulation/scenes.hpp"
 
 namespace verisim::determinism {
@@ -47,6 +48,47 @@ inline Scene hybrid_pin(Hybrid hybrid, Integrator integrator, AlignmentMeasure a
   return scene;
 }
 
+/// Precise contacts: a hand brings `moving` from `start` down to `end` [m] into `standing`, a little
+/// beside its axis, and goes back.
+inline Scene exact_scene(std::vector<Part> standing, std::vector<Part> moving, double start, double end,
+                         double voxel_size) {
+  Scene scene;
+  scene.parameters.duration = 0.6;
+  scene.parameters.hybrid = Hybrid::exact;
+  for (std::vector<Part>* parts : {&standing, &moving}) {
+    BodyDescription& body = scene.bodies.emplace_back();
+    body.name = parts == &standing ? "standing" : "moving";
+    body.parts = std::move(*parts);
+    body.voxel_size = voxel_size;
+  }
+  scene.bodies[0].fixed = true;
+  scene.bodies[1].X_WB.position = {0.0003, 0, start};
+  scene.devices = {scenes::hand_along({{0.0003, 0, start}, {0.002, 0.001, end}, {0.0003, 0, start}}, 0.3, 0.0002)};
+  scene.grasps = {{0, 1}};
+  return scene;
+}
+
+inline Scene exact_pin() {
+  return exact_scene({turned_tube(0.075, 0.15, -0.05, 0.05)}, {turned_pin(0.0745, 0, 0.2)}, 0.052, -0.01, 0.0045);
+}
+
+inline Scene exact_cone() {
+  const Turned seat({{0.015, -0.03}, {0.06, -0.03}, {0.06, 0.03}, {0.035, 0.03}}, 0);
+  const Turned taper({{0, -0.03}, {0.015, -0.03}, {0.035, 0.03}, {0, 0.03}}, 0);
+  return exact_scene({Turned(seat).part("seat")}, {Turned(taper).part("taper")}, 0.01, -0.005, 0.002);
+}
+
+/// Two tubes stand side by side, two pins move as one.
+inline Scene exact_two_pins() {
+  std::vector<Part> tubes;
+  std::vector<Part> pins;
+  for (const double x : {-0.06, 0.06}) {
+    tubes.push_back(turned_tube(0.025, 0.045, -0.03, 0.03, x));
+    pins.push_back(turned_pin(0.0246, 0, 0.09, x));
+  }
+  return exact_scene(std::move(tubes), std::move(pins), 0.032, 0, 0.003);
+}
+
 inline std::vector<CoreScene> core_scenes() {
   const auto pin = [](Integrator integrator) {
     Scene scene = scenes::pin_in_hole();
@@ -60,6 +102,9 @@ inline std::vector<CoreScene> core_scenes() {
           {"pin_restored_implicit",
            [] { return hybrid_pin(Hybrid::restore, Integrator::implicit, AlignmentMeasure::pavlik); }},
           {"pin_blended", [] { return hybrid_pin(Hybrid::blend, Integrator::semi_implicit, AlignmentMeasure::faas); }},
+          {"pin_exact", exact_pin},
+          {"cone_exact", exact_cone},
+          {"two_pins_exact", exact_two_pins},
           {"falling_boxes", [] { return scenes::falling_boxes(3, Integrator::semi_implicit); }},
           {"falling_boxes_implicit", [] { return scenes::falling_boxes(3, Integrator::implicit); }}};
 }
