@@ -107,7 +107,7 @@ class Search {
 
  private:
   void meet(std::uint32_t run, std::uint32_t face);
-  void hide_beyond_an_edge(const PlacedFeature& placed, const Run& run, std::uint32_t face, const Sight& mine,
+  void hide_beyond_an_edge(const PlacedFeature& placed, const Run& run, std::uint32_t face, const Sight& sight,
                            std::span<double> ahead) const;
   [[nodiscard]] Lead lead_of(const PreciseSurface& other, const PreciseSurface& mine, const PlacedFeature& placed,
                              const Run& run, const Sight& sight) const;
@@ -259,9 +259,8 @@ Lead Search::lead_of(const PreciseSurface& other, const PreciseSurface& mine, co
   return lead;
 }
 
-/// Takes out the samples that the face across a convex edge hides: what `admit` would find of them one by one,
-/// here a group at a time. Where
-/// two bodies lie flush these are most of those that are near.
+/// Takes out the samples that the face across a convex edge hides, a group at a time: what `admit` would find of them
+/// one by one. Where two bodies lie flush these are most of those that are near. @pre one of them is near
 void Search::hide_beyond_an_edge(const PlacedFeature& placed, const Run& run, std::uint32_t face, const Sight& sight,
                                  std::span<double> ahead) const {
   const std::uint32_t count = run.end - run.begin;
@@ -269,8 +268,7 @@ void Search::hide_beyond_an_edge(const PlacedFeature& placed, const Run& run, st
     return placed.point({0, mover_.sample_c[run.begin + i], mover_.sample_s[run.begin + i]});
   };
   std::uint32_t first = 0;
-  while (first < count && ahead[first] == kNever) ++first;
-  if (first == count) return;
+  while (ahead[first] == kNever) ++first;
   const ExactEdge* edge = hiding_edge(place(first), face);
   if (edge == nullptr) return;
   const Lead lead = lead_of(*base_.faces[across(*edge, face)].surface, *base_.faces[face].surface, placed, run, sight);
