@@ -11,6 +11,9 @@ namespace {
 /// Of a fit: a clearance of zero would divide by zero in eq. 8.2. A micrometre is the finest that fits are made to.
 constexpr double kClearanceLeast = 1e-6;
 
+/// Of a voxel: by how much a pin that is not yet in its hole may miss it and still be guided in (alignment.hpp).
+constexpr double kGuided = 0.1;
+
 struct AxisInA {
   Vector3d point, direction;
   double half_length;
@@ -196,8 +199,8 @@ double alignment(AlignmentMeasure measure, const Constraint& constraint, const M
   if (!std::isfinite(m.offset + m.sine + m.cosine)) return 0;
   double alpha = 0;
   if (measure == AlignmentMeasure::by_type) {
-    alpha = std::max(0.0, 1 - std::max(0.0, miss(constraint, m, scales.voxel_size))) *
-            engagement(constraint, m, scales.voxel_size);
+    const double missed = std::max(0.0, miss(constraint, m, scales.voxel_size));
+    alpha = std::max((1 - missed) * engagement(constraint, m, scales.voxel_size), 1 - missed / kGuided);
   } else {
     const double theta = pinned::atan2(m.sine, m.cosine);
     double angle_term = theta;

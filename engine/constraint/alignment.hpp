@@ -15,9 +15,10 @@
 //       alpha = 1 - max(0, x) / s, at least 0.
 //   axes     x = offset + (engaged / 2) tan(theta) - clearance. While it is below 0 the pin stands freely in its hole
 //            (x = 0 is the two-point contact of ORACLES section 2 to first order): nothing is misaligned, alpha = 1.
-//            A degree costs a long pin much and a short one little. All of this times engaged / s, at most 1 (s: no
-//            more than the shorter side): before the pin's end has passed the rim no wall faces another, and a pin that
-//            stands on the rim a little beside its hole would lose the push that holds it.
+//            A degree costs a long pin much and a short one little. If x > 0, times engaged / s, at most 1 (s: no more
+//            than the shorter side): before the pin's end has passed the rim no wall faces another, and a pin that
+//            stands on the rim a little beside its hole would lose the push that holds it. Below x = s / 10 this goes
+//            over into 1: a pin that stands freely before its hole touches nothing, whatever the voxels say.
 //   centres  x = distance - clearance. Angles mean nothing: a ball is round.
 //   ball on an axis: x = distance from the axis, and past the tube's end, - clearance.
 //   planes, and edges or rollers on planes: a plate that is tilted still slides; what a tilt spoils is which way the

@@ -26,8 +26,9 @@ class Neighbourhood {
   [[nodiscard]] std::size_t slot(int x, int y, int z) const {
     if (((x | y | z) & ~7) == 0)
       return std::size_t{blocks_[13]} * kBrickCells + static_cast<std::size_t>(x + 8 * y + 64 * z);
-    const auto brick = static_cast<std::size_t>(((z + 8) >> 3) * 9 + ((y + 8) >> 3) * 3 + ((x + 8) >> 3));
-    return std::size_t{blocks_[brick]} * kBrickCells + static_cast<std::size_t>((x & 7) + 8 * (y & 7) + 64 * (z & 7));
+    const int brick = ((z + 8) >> 3) * 9 + ((y + 8) >> 3) * 3 + ((x + 8) >> 3);
+    return std::size_t{blocks_[static_cast<std::size_t>(brick)]} * kBrickCells +
+           static_cast<std::size_t>((x & 7) + 8 * (y & 7) + 64 * (z & 7));
   }
 
  private:

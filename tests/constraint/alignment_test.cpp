@@ -124,16 +124,28 @@ TEST(AlignmentByType, IsZeroForAPinBesideOrAcrossItsHole) {
   EXPECT_GE(alpha(AlignmentMeasure::pavlik, peg(), {{0.2, 0, 0}, Quaterniond::Identity()}), 0.5);  // the published one
 }
 
-// Before its end has passed the rim a pin is in no hole, wherever it stands; a plate thinner than a voxel is passed
-// once the pin is through.
-TEST(AlignmentByType, OfAPinBeginsAtTheRimAndIsWholeAVoxelBehindIt) {
-  const auto deep = [](const Constraint& c, double rim, double depth) {
-    return by_type(c, {{0.002, 0, rim + 0.2 - depth}, Quaterniond::Identity()});
+// Before its end has passed the rim a pin that stands beside its hole is not in it; a plate thinner than a voxel is
+// passed once the pin is through.
+TEST(AlignmentByType, OfAPinBesideItsHoleBeginsAtTheRimAndIsWholeAVoxelBehindIt) {
+  const double beside = 0.001, aligned = 1 - beside / 0.0045;
+  const auto deep = [&](const Constraint& c, double rim, double depth) {
+    return by_type(c, {{0.005 + beside, 0, rim + 0.2 - depth}, Quaterniond::Identity()});
   };
   for (const double depth : {-0.1, -0.001, 0.0, 0.001, 0.002, 0.0045, 0.1}) {
-    EXPECT_NEAR(deep(peg(), 0.1, depth), std::clamp(depth / 0.0045, 0.0, 1.0), tolerance(1e-12)) << depth;
-    EXPECT_NEAR(deep(peg(0.070, 0.001), 0.001, depth), std::clamp(depth / 0.002, 0.0, 1.0), tolerance(1e-12)) << depth;
+    EXPECT_NEAR(deep(peg(), 0.1, depth), aligned * std::clamp(depth / 0.0045, 0.0, 1.0), tolerance(1e-12)) << depth;
+    EXPECT_NEAR(deep(peg(0.070, 0.001), 0.001, depth), aligned * std::clamp(depth / 0.002, 0.0, 1.0), tolerance(1e-12))
+        << depth;
   }
+}
+
+// What stands freely before its hole touches nothing, so nothing may hold it there; that ends a tenth of a voxel
+// beside.
+TEST(AlignmentByType, OfAPinThatStandsFreelyBeforeItsHoleIsWhole) {
+  const auto before = [](double offset) { return by_type(peg(), {{offset, 0, 0.301}, Quaterniond::Identity()}); };
+  EXPECT_EQ(before(0), 1);
+  EXPECT_EQ(before(0.00499), 1);
+  for (double beside = 0; beside < 0.0006; beside += 1e-5)
+    EXPECT_NEAR(before(0.005 + beside), std::max(0.0, 1 - beside / 0.00045), tolerance(1e-9)) << beside;
 }
 
 // A pin of 70 mm covers part of a hole of 75 mm up to 145 mm between their axes.

@@ -60,7 +60,7 @@ TEST(DefineSimulationParameters, RefusesWhatIsWrongWithPlaceAndRemedy) {
             std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{alignment = 'bytype'}").find("did you mean 'by-type'?"),
             std::string::npos);
-  EXPECT_NE(refusal_of("defineSimulationParameters{reduction = 'one'}").find("(common-freedom, exactly-one)"),
+  EXPECT_NE(refusal_of("defineSimulationParameters{reduction = 'one'}").find("; known: common-freedom, exactly-one"),
             std::string::npos);
   EXPECT_EQ(
       refusal_of("defineSimulationParameters(3)"),
