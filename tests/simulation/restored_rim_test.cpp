@@ -16,7 +16,7 @@ constexpr double kTop = 0.05, kHalfLength = 0.1, kClearance = 0.005;  ///< of th
 /// One frame's force on the pin, upright and at rest, its end `depth` below the block's top.
 class PinAt {
  public:
-  explicit PinAt(const Scene& scene) : simulation_(scene, {}) {}
+  PinAt(Hybrid hybrid, double voxel) : simulation_(left_alone(hybrid, voxel), {}) {}
   Vector3d force(double offset, double depth) {
     simulation_.set_body_pose(kPin, {{offset, 0, kTop + kHalfLength - depth}, Quaterniond::Identity()});
     simulation_.step();
@@ -24,6 +24,12 @@ class PinAt {
   }
 
  private:
+  static Scene left_alone(Hybrid hybrid, double voxel) {
+    Scene scene = scenes::brep_pin_in_hole(hybrid, voxel);
+    scene.grasps.clear();
+    scene.devices = {scenes::hand_along({{1, 0, 1}}, 0.5)};  // out of reach: nobody holds the pin
+    return scene;
+  }
   Simulation simulation_;
 };
 
@@ -32,12 +38,8 @@ class PinAt {
 // the rim's voxels, and of the push along the axis at most so much may be taken.
 TEST(RestoredRim, HoldsAPinThatStandsBesideItsHole) {
   for (const double voxel : {0.0045, 0.002}) {
-    Scene scene = scenes::brep_pin_in_hole(Hybrid::off, voxel);
-    scene.grasps.clear();
-    scene.devices = {scenes::hand_along({{1, 0, 1}}, 0.5)};  // out of reach: nobody holds the pin
-    PinAt off(scene);
-    scene.parameters.hybrid = Hybrid::restore;
-    PinAt restored(scene);
+    PinAt off(Hybrid::off, voxel);
+    PinAt restored(Hybrid::restore, voxel);
     for (const double beside : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0}) {
       for (const double depth : {0.0, 0.1, 0.25, 0.5}) {
         const double taken = depth * std::max(0.0, 1 - beside);
@@ -53,10 +55,7 @@ TEST(RestoredRim, HoldsAPinThatStandsBesideItsHole) {
 // A voxel deep and within its clearance nothing holds the pin up: its slide is free.
 TEST(RestoredRim, LetsAPinGoInOnceItsEndIsInTheHole) {
   for (const double voxel : {0.0045, 0.002}) {
-    Scene scene = scenes::brep_pin_in_hole(Hybrid::restore, voxel);
-    scene.grasps.clear();
-    scene.devices = {scenes::hand_along({{1, 0, 1}}, 0.5)};  // out of reach: nobody holds the pin
-    PinAt restored(scene);
+    PinAt restored(Hybrid::restore, voxel);
     const Vector3d force = restored.force(kClearance - 0.1 * voxel, 2 * voxel);
     EXPECT_GT(force.head<2>().norm(), 0.1);
     EXPECT_LE(std::abs(force.z()), 1e-5 * force.norm());
