@@ -13,7 +13,7 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_option("--seed", o.seed, "Seed of every random stream");
   command.add_option("--threads", o.threads, "Threads (same bits for any number)")->check(CLI::Range(1, 256));
   command.add_option("--simd", o.simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
-  command.add_flag("--realtime", o.realtime, "Pace by the wall clock");
+  command.add_flag("--realtime", o.realtime, "Pace by the wall clock, with real-time priority if the system grants it");
   command.add_flag("--json", o.json, "One JSON object on stdout, all else on stderr");
   command.add_flag("--quiet", o.quiet, "No progress, no summary");
   command.add_flag("--no-embed", o.no_embed, "Leave the content of input files out of the run file");

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "engine/base/error.hpp"
+#include "engine/cli/realtime_priority.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -51,7 +52,16 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
   loop.finished = [&] { return session.scenario->finished(); };
   loop.progress = progress_bar(loop.frames, options.progress);
   RecordedRun run;
-  run.loop = run_loop(simulation, &recorder, schema, loop);
+  {
+    const RealtimePriority priority(options.paced);  // the recorder's thread has started without it
+    if (options.paced && options.progress && !priority.granted())
+      std::fputs(
+          "note: the system grants no real-time priority (CAP_SYS_NICE, or `ulimit -r 1`): other work can make "
+          "periods too long\n",
+          stderr);
+    run.loop = run_loop(simulation, &recorder, schema, loop);
+    run.loop.realtime_priority = priority.granted();
+  }
   if (loop.progress) std::fprintf(stderr, "\r%60s\r", "");
   run.summary = summarize(session, run.loop, options.file);
   if (run.loop.end != LoopEnd::io_failed)

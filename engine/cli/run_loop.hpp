@@ -29,6 +29,7 @@ struct LoopResult {
   std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block behind each
   std::vector<std::uint32_t> frame_ns;              ///< of every frame
   std::vector<std::uint32_t> collision_frame_ns;    ///< of the frames with contact
+  bool realtime_priority = false;                   ///< whether the thread had it
   double wall_s = 0;                                ///< first frame to the last row handed over
 };
 

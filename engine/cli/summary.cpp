@@ -51,6 +51,7 @@ Summary summarize(const Session& session, LoopResult& loop, const std::string& r
   s.frames = loop.frame_ns.size();
   s.collision_frames = simulation.collision_frames();
   s.overruns = loop.overruns;
+  s.realtime_priority = loop.realtime_priority;
   const Simulation::Totals& totals = simulation.totals();
   s.collisions = totals.contacts;
   s.cache_hits = totals.cache_hits;
@@ -81,6 +82,7 @@ std::string to_json(const Summary& s) {
   j["realtime_factor"] = realtime_factor(s);
   j["collision_frames"] = s.collision_frames;
   j["overruns"] = s.overruns;
+  j["realtime_priority"] = s.realtime_priority;
   j["collisions"] = s.collisions;
   j["cache_hits"] = s.cache_hits;
   j["cache_misses"] = s.cache_misses;
@@ -115,7 +117,7 @@ std::string to_table(const Summary& s) {
   if (s.cache_hits + s.cache_misses > 0)
     row("look-ups", fmt::format("{} memoized, {} recognized ({} of them to no constraint)", s.cache_hits,
                                 s.cache_misses, s.null_misses));
-  row("overruns", fmt::format("{}", s.overruns));
+  row("overruns", fmt::format("{}{}", s.overruns, s.realtime_priority ? " (with real-time priority)" : ""));
   row("frame", times(s.frame_ns));
   if (s.collision_frames > 0) row("frame with contact", times(s.collision_frame_ns));
   row("largest force", fmt::format("{:.3g} N", s.force_max));

@@ -14,6 +14,7 @@ struct Summary {
   std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
   std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
   std::vector<std::pair<std::string, std::uint64_t>> constraints;  ///< name, frames in which a pair stood under it
+  bool realtime_priority = false;
   double simulated_s = 0, wall_s = 0, load_s = 0, force_max = 0, penetration_max = 0;
   struct Times {
     std::uint32_t p50 = 0, p99 = 0, max = 0;

@@ -64,10 +64,11 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
        0.124,
        100 * share.value,
        std::pair(100 * share.interval.first, 100 * share.interval.second),
-       fmt::format("an empty paced loop on this machine, second by second in turn: {:.3g} % [{:.3g}, {:.3g}]; the "
-                   "difference {:+.3g} % [{:+.3g}, {:+.3g}] is {}",
-                   100 * idle.value, 100 * idle.interval.first, 100 * idle.interval.second, 100 * difference.value,
-                   100 * difference.interval.first, 100 * difference.interval.second,
+       fmt::format("{} real-time priority; an empty paced loop on this machine, second by second in turn: {:.3g} % "
+                   "[{:.3g}, {:.3g}]; the difference {:+.3g} % [{:+.3g}, {:+.3g}] is {}",
+                   run.realtime_priority ? "with" : "without", 100 * idle.value, 100 * idle.interval.first,
+                   100 * idle.interval.second, 100 * difference.value, 100 * difference.interval.first,
+                   100 * difference.interval.second,
                    shows ? "beyond its own 95 % interval" : "within its own 95 % interval"),
        {file}},
       {"R1",

@@ -45,6 +45,7 @@ struct RunFigures {
   std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
   std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
   double simulated_s = 0, wall_s = 0;
+  bool realtime_priority = false;                 ///< paced: the system granted it
   std::vector<std::uint32_t> frame_ns;            ///< of every frame
   std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
   std::vector<std::pair<std::string, double>> measures;

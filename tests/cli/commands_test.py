@@ -1,12 +1,31 @@
 """Commands, options and what they print (INTERFACES section 1)."""
+import ctypes
 import json
 import os
+import resource
 import subprocess
 import unittest
 
 import h5py
 
 from program import turned_stl, ProgramTest, SMALL, VERISIM
+
+def system_grants_priority():
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except PermissionError:
+        return False
+    os.sched_setscheduler(0, *before)
+    return True
+
+
+def lose_the_right_to_priority():
+    """In a child before it becomes another program: root's by the bounding set, a user's by the limit."""
+    CAP_SYS_NICE, PR_CAPBSET_DROP = 23, 24
+    resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+    ctypes.CDLL(None).prctl(PR_CAPBSET_DROP, CAP_SYS_NICE, 0, 0, 0)
+
 
 COMMANDS = ["run", "replay", "recover", "inspect", "trace", "doctor"]
 
@@ -79,6 +98,17 @@ class Commands(ProgramTest):
         summary = self.small_run("--realtime", "--duration", "0.2")[1]
         self.assertGreater(summary["wall_s"], 0.19)
         self.assertAlmostEqual(summary["realtime_factor"], 1, delta=0.2)
+
+    def test_realtime_asks_for_priority_and_says_when_it_is_refused(self):
+        run_file, summary = self.small_run("--realtime", "--duration", "0.05")
+        self.assertEqual(summary["realtime_priority"], system_grants_priority())
+        self.assertFalse(self.small_run()[1]["realtime_priority"])
+        command = [VERISIM, "run", self.path("small.lua"), "-o", run_file, "--realtime", "--duration", "0.05"]
+        refused = subprocess.run(command, preexec_fn=lose_the_right_to_priority, capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 0, refused.stderr)
+        self.assertIn("no real-time priority", refused.stderr)
+        self.assertEqual(subprocess.run(command + ["--quiet"], preexec_fn=lose_the_right_to_priority,
+                                        capture_output=True, text=True).stderr, "")
 
     def test_the_run_file_is_what_interfaces_says(self):
         run_file, summary = self.small_run()
