@@ -8,11 +8,11 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
-#include <cstdlib>
 
 #include "bench/peg_scene.hpp"
 #include "bench/plain_loop.hpp"
 #include "bench/pose_times.hpp"
+#include "bench/promise.hpp"
 #include "tests/exact/driven_insertion.hpp"
 #include "tests/exact/seated_cone.hpp"
 
@@ -96,14 +96,16 @@ void BM_DrivenInsertion(benchmark::State& state) {
         [&](const exact::test::HeldPin& pin) { overlap_max = std::max(overlap_max, pin.overlap()); });
   }
   times.report(state);
+  at_most(state, "median_us", times.percentile(0.5), 20);
+  at_most(state, "p99_us", times.percentile(0.99), 100);
   state.counters["plain_voxmap_loop_us"] = plain_loop_us();
   if (task.chamfer > 0) return;  // the closed form of the overlap is that of a sharp hole
   state.counters["overlap_share"] = overlap_max / task.clearance;
-  if (overlap_max > 0.025 * task.clearance) state.SkipWithError("deeper than 2.5 % of the clearance");
+  if (overlap_max > 0.025 * task.clearance) wrong(state, "deeper than 2.5 % of the clearance");
 }
 BENCHMARK(BM_DrivenInsertion)
     ->ArgsProduct({{1000, 100, 20, 10}, {0, 1}})
-    ->Iterations(std::getenv("VERISIM_BENCH_SMOKE") != nullptr ? 1 : 7)
+    ->Iterations(smoke() ? 1 : 7)
     ->Unit(benchmark::kMillisecond);
 
 /// Argument: how much wider the seat is than the taper [um].
@@ -114,13 +116,7 @@ void BM_SeatedCone(benchmark::State& state) {
          exact::test::kSeatSteps, times, [](const HeldBody&) {});
   times.report(state);
 }
-BENCHMARK(BM_SeatedCone)
-    ->Arg(0)
-    ->Arg(10)
-    ->Iterations(std::getenv("VERISIM_BENCH_SMOKE") != nullptr ? 1 : 7)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_SeatedCone)->Arg(0)->Arg(10)->Iterations(smoke() ? 1 : 7)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace verisim::bench
-
-BENCHMARK_MAIN();

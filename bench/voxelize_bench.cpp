@@ -3,9 +3,9 @@
 // that stay. A run fails if it finds another number of surface voxels than the plain count.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
 #include <map>
 
+#include "bench/promise.hpp"
 #include "engine/voxel/voxelize.hpp"
 #include "tests/voxel/plain.hpp"
 #include "tests/voxel/shapes.hpp"
@@ -13,13 +13,9 @@
 namespace verisim {
 namespace {
 
-bool smoke() {
-  return std::getenv("VERISIM_BENCH_SMOKE") != nullptr;
-}
-
 /// The same in a test run, but with few voxels.
 double size_or_coarse(double voxel_size) {
-  return smoke() ? std::max(voxel_size, 0.004) : voxel_size;
+  return bench::smoke() ? std::max(voxel_size, 0.004) : voxel_size;
 }
 
 /// Counted once per name and size: the library calls a benchmark several times to find its number of iterations.
@@ -34,7 +30,7 @@ void run(benchmark::State& state, const std::string& name, const TriangleMesh& m
   VoxelBody body;
   for (auto _ : state) body = voxelize(name, mesh, options);
   if (body.voxmap.surface_count != plain_count(name, mesh, body.voxmap)) {
-    state.SkipWithError("fast and plain voxelization disagree");
+    bench::wrong(state, "fast and plain voxelization disagree");
   }
   const auto voxels = static_cast<double>(body.voxmap.surface_count);
   const auto bytes = static_cast<double>(body.voxmap.memory_bytes() + body.shell.memory_bytes());
@@ -62,12 +58,10 @@ BENCHMARK(BM_VoxelizeTiltedBlock)->Unit(benchmark::kMillisecond);
 
 /// A scan: far more triangles than voxels. Argument: refinements of an octahedron (8 * 4^n triangles).
 void BM_VoxelizeFineSphere(benchmark::State& state) {
-  const int refinements = smoke() ? 4 : static_cast<int>(state.range(0));
+  const int refinements = bench::smoke() ? 4 : static_cast<int>(state.range(0));
   run(state, "sphere " + std::to_string(refinements), shapes::sphere(0.1, refinements), {.voxel_size = 0.002});
 }
 BENCHMARK(BM_VoxelizeFineSphere)->Arg(5)->Arg(8)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace verisim
-
-BENCHMARK_MAIN();

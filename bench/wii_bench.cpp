@@ -4,15 +4,15 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include "bench/promise.hpp"
 #include "engine/wii/trajectories.hpp"
 
 namespace verisim::wii {
 namespace {
 
 std::size_t report_count() {
-  return std::getenv("VERISIM_BENCH_SMOKE") != nullptr ? 100 : 2000;
+  return bench::smoke() ? 100 : 2000;
 }
 
 TrackerSettings settings_of(const std::string& name) {
@@ -65,8 +65,8 @@ void BM_Update(benchmark::State& state, const std::string& name) {
     }
   }
   const double rms = std::sqrt(square / std::max(valid, 1));
-  if (valid < 0.99 * static_cast<double>(run.first.size())) state.SkipWithError("the head was lost");
-  if (name != "vrpn-compatible" && rms > 0.01) state.SkipWithError("the tracker is off by more than a centimetre");
+  if (valid < 0.99 * static_cast<double>(run.first.size())) bench::wrong(state, "the head was lost");
+  if (name != "vrpn-compatible" && rms > 0.01) bench::wrong(state, "the tracker is off by more than a centimetre");
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(run.first.size()));
   state.counters["per_update"] =
       benchmark::Counter(static_cast<double>(run.first.size()),
@@ -97,5 +97,3 @@ BENCHMARK(BM_Sense);
 
 }  // namespace
 }  // namespace verisim::wii
-
-BENCHMARK_MAIN();
