@@ -85,14 +85,8 @@ class Scenes(ProgramTest):
         by_hand, solid = (self.scene("declared", "--set", "by=" + by, run_file=by + ".h5") for by in ("hand", "solid"))
         self.assertEqual(by_hand["outcome"], "inserted")
         self.assertGreater(by_hand["constraints"]["cylindrical"], 1000)
-        for fact in ("constraints", "collision_frames"):
+        for fact in ("constraints", "collision_frames", "state_hash"):
             self.assertEqual(by_hand[fact], solid[fact], fact)
-        # The CAD kernel rounds a face's bounds to 3e-12 m; how far a pin is in depends on them.
-        poses = []
-        for s in (by_hand, solid):
-            with h5py.File(s["run_file"]) as file:
-                poses.append(file["/state/body/pin/pose"][:])
-        self.assertLess(abs(poses[0] - poses[1]).max(), 1e-6)
 
     def test_parts_of_bare_triangles_are_recognized_once_their_faces_are_recovered(self):
         self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))
