@@ -10,6 +10,7 @@ local p = params{
   duration = 45.833,        -- s
   half = false,
   hybrid = "off",
+  contact = "voxmap",       -- or "fcl": triangle against triangle, to compare with
   integrator = "semi-implicit",
 }
 
@@ -20,7 +21,7 @@ local scale = 4
 
 defineSimulationParameters{
   maxStiffness = 300, maxAngularStiffness = 0.1,
-  hybrid = p.hybrid, integrator = p.integrator, duration = p.duration,
+  hybrid = p.hybrid, contact = p.contact, integrator = p.integrator, duration = p.duration,
 }
 
 addObject{

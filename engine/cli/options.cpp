@@ -6,7 +6,10 @@ namespace verisim::cli {
 
 void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_option("-o,--out", o.out, "Run file to write (default: runs/SCENARIO.h5)");
-  command.add_option("--set", o.sets, "KEY=VALUE: scenario parameter, a Lua expression; a bare word is a string")
+  command
+      .add_option("--set", o.sets,
+                  "KEY=VALUE: scenario parameter, a Lua expression; a bare word is a string; an unknown "
+                  "KEY lists what the scenario knows")
       ->take_all();
   command.add_option("--bind", o.binds, "NAME=SOURCE: drive the device NAME from a trace file")->take_all();
   command.add_option("--duration", o.duration, "Simulated seconds")->check(CLI::PositiveNumber);

@@ -34,7 +34,10 @@ using Recognizers =
 ///   edges on edges (but circles): two curves cross at a point and press along the normal to both, which turns with the
 ///     pose.
 ///   line on round faces: a straight edge touches them at points, and the faces beside it are in the set anyway.
-///   circle on plane and sphere, ellipse, torus: rims of rims; the face beside the rim has the same normal.
+///   circle on plane: the end face that the rim bounds is in the set as well and gives the same normal.
+///   circle on sphere or torus: contact all around the rim only while coaxial, else at points that move with the pose;
+///     the faces beside the rim answer.
+///   ellipse (the rim of an oblique cut) on anything: as circle on sphere.
 ///   other: no equation is known.
 inline constexpr std::array<std::string_view, 10> kDrawing = {
     //               plane

@@ -45,6 +45,12 @@ CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
   contacts_ = ContactList(shell_->size());
 }
 
+void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& second) {
+  map_mesh_ = first_is_map_ ? &first : &second;
+  points_mesh_ = first_is_map_ ? &second : &first;
+  contacts_ = ContactList(kMeshContactsMax);
+}
+
 void CollisionLink::clear() {
   contacts_.size = 0;
   on_first_ = on_second_ = LinkSide();
@@ -55,7 +61,11 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
   clear();
   const Pose& X_WM = first_is_map_ ? X_W1 : X_W2;
   const Pose& X_WP = first_is_map_ ? X_W2 : X_W1;
-  verisim::query(*map_, *shell_, X_WM.inverse() * X_WP, contacts_, cost);
+  const Pose X_MP = X_WM.inverse() * X_WP;
+  if (map_mesh_ != nullptr)
+    verisim::query(*map_mesh_, *points_mesh_, X_MP, map_->origin, contacts_);
+  else
+    verisim::query(*map_, *shell_, X_MP, contacts_, cost);
 }
 
 void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "engine/base/pose.hpp"
+#include "engine/contact/mesh_query.hpp"
 #include "engine/contact/penalty.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/voxel/voxmap.hpp"
@@ -41,8 +42,11 @@ struct LinkSide {
 class CollisionLink {
  public:
   CollisionLink(const VoxelBody& first, const VoxelBody& second);
+  /// From now on contacts are found by triangle against triangle, at most kMeshContactsMax.
+  void find_by_triangles(const MeshTree& first, const MeshTree& second);
+  static constexpr std::size_t kMeshContactsMax = 65536;
 
-  /// Detection: fills the contact list. No allocation.
+  /// Detection: fills the contact list. No allocation (but by FCL).
   void query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost);
   [[nodiscard]] ContactList& contacts() { return contacts_; }
   [[nodiscard]] const ContactList& contacts() const { return contacts_; }
@@ -67,6 +71,8 @@ class CollisionLink {
   const Voxmap* map_;
   const Pointshell* shell_;
   bool first_is_map_;
+  const MeshTree* map_mesh_ = nullptr;  ///< null: by voxels
+  const MeshTree* points_mesh_ = nullptr;
   ContactList contacts_;
   Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
   Vector3d about_ = Vector3d::Zero();

@@ -30,6 +30,7 @@ constexpr Named<Hybrid> kHybrids[] = {
     {"off", Hybrid::off}, {"restore", Hybrid::restore}, {"blend", Hybrid::blend}, {"exact", Hybrid::exact}};
 constexpr Named<Integrator> kIntegrators[] = {{"semi-implicit", Integrator::semi_implicit},
                                               {"implicit", Integrator::implicit}};
+constexpr Named<ContactMethod> kContactMethods[] = {{"voxmap", ContactMethod::voxmap}, {"fcl", ContactMethod::fcl}};
 constexpr Named<AlignmentMeasure> kAlignments[] = {
     {"by-type", AlignmentMeasure::by_type}, {"faas", AlignmentMeasure::faas}, {"pavlik", AlignmentMeasure::pavlik}};
 constexpr Named<Reduction> kReductions[] = {{"common-freedom", Reduction::common_freedom},
@@ -64,6 +65,7 @@ int define_simulation_parameters(lua_State* L) {
   p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
   read_named(L, fields, "integrator", kIntegrators, p.integrator);
   read_named(L, fields, "hybrid", kHybrids, p.hybrid);
+  read_named(L, fields, "contact", kContactMethods, p.contact);
   read_named(L, fields, "alignment", kAlignments, p.alignment);
   read_named(L, fields, "reduction", kReductions, p.reduction);
   p.max_stiffness = fields.positive("maxStiffness").value_or(p.max_stiffness);
@@ -78,8 +80,6 @@ int define_simulation_parameters(lua_State* L) {
   }
   p.passive_contacts = fields.boolean("passiveContacts").value_or(p.passive_contacts);
   state.scene.grasp_distance = fields.positive("graspDistance").value_or(state.scene.grasp_distance);
-  if (const auto contact = fields.text("contact"); contact && *contact != "voxmap")
-    raise(L, "contact is '{}' but this version knows 'voxmap' only", *contact);
   accept_without_effect(L, fields, {"limitCouplerDampingForce", "precision", "parts"});
   fields.finish(false);
   return 0;

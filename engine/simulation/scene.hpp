@@ -24,6 +24,10 @@ enum class Integrator { semi_implicit, implicit };
 /// How much of the precise geometry acts; of two bodies that differ, the one that is listed first counts.
 enum class Hybrid { off, restore, blend, exact };
 
+/// How contacts of two bodies are found: pointshell against voxmap, or triangle against triangle to compare with (no
+/// hybrid method acts on those).
+enum class ContactMethod { voxmap, fcl };
+
 /// defineSimulationParameters{…} (INTERFACES sections 2 and 3: names and defaults).
 struct SimulationParameters {
   double timestep = 0.001;              ///< s
@@ -33,6 +37,7 @@ struct SimulationParameters {
   double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
   Hybrid hybrid = Hybrid::restore;  ///< where both bodies have b-reps
+  ContactMethod contact = ContactMethod::voxmap;
   AlignmentMeasure alignment = AlignmentMeasure::by_type;
   Reduction reduction = Reduction::common_freedom;
   double max_stiffness = 300;                                            ///< N/m, virtual coupling

@@ -71,15 +71,14 @@ Simulation::Implementation::Implementation(Scene scene, const SimulationOptions&
       heads(scene.heads),
       grasp_distance(scene.grasp_distance),
       clocks(scene.parameters.timestep) {
-  for (const BodyDescription& body : scene.bodies)
-    if (body.hybrid.value_or(parameters.hybrid) == Hybrid::exact) parameters.integrator = Integrator::implicit;
+  events.reserve(1024);
+  choose_methods(scene);
   double longest = 0;
   for (const auto& device : devices) longest = std::max(longest, device->duration());
   for (const auto& head : heads) longest = std::max(longest, head->duration());
   const double duration = parameters.duration ? *parameters.duration : (longest > 0 ? longest : 1.0);
   frames_planned = static_cast<std::uint64_t>(std::llround(duration / dt));
 
-  events.reserve(1024);
   place_bodies(scene);
   voxelize_bodies(scene);
   make_links();
@@ -87,6 +86,21 @@ Simulation::Implementation::Implementation(Scene scene, const SimulationOptions&
   first_grasps = scene.grasps;
   energy = energy_now();
   ledger.start(energy);
+}
+
+/// The exact response needs the implicit integrator; FCL's contacts belong to no voxel whose faces would be known.
+void Simulation::Implementation::choose_methods(const Scene& scene) {
+  bool asked_for = false;
+  for (const BodyDescription& body : scene.bodies) {
+    const Hybrid hybrid = body.hybrid.value_or(parameters.hybrid);
+    asked_for |= hybrid != Hybrid::off;
+    if (parameters.contact == ContactMethod::voxmap && hybrid == Hybrid::exact)
+      parameters.integrator = Integrator::implicit;
+  }
+  if (parameters.contact == ContactMethod::fcl && asked_for)
+    events.push_back({0, "hybrid",
+                      "contact = \"fcl\" finds triangles, not voxels with faces: every contact is as with hybrid = "
+                      "\"off\""});
 }
 
 void Simulation::Implementation::place_bodies(const Scene& scene) {
@@ -105,7 +119,8 @@ void Simulation::Implementation::place_bodies(const Scene& scene) {
     body.rigid.set_pose(description.X_WB);
     body.rigid.v_C = description.twist.linear;
     body.rigid.omega = description.twist.angular;
-    body.hybrid = description.hybrid.value_or(parameters.hybrid);
+    body.hybrid =
+        parameters.contact == ContactMethod::fcl ? Hybrid::off : description.hybrid.value_or(parameters.hybrid);
     body.hybrid_enabled = description.hybrid_enabled;
     body.selectable = description.selectable && !description.fixed;
     const std::size_t index = bodies.size();
@@ -154,6 +169,7 @@ void Simulation::Implementation::voxelize_bodies(const Scene& scene) {
     if (bodies[i].hybrid != Hybrid::off && (part.has_brep() || description.declared))
       associate(description.name, part, {.threads = threads, .declared = description.declared.get()}, *voxels);
     bodies[i].voxels = std::move(voxels);
+    if (parameters.contact == ContactMethod::fcl) bodies[i].mesh = std::make_unique<MeshTree>(part.mesh);
     make_hybrid(description, bodies[i]);
   }
 }
@@ -176,6 +192,7 @@ void Simulation::Implementation::make_links() {
       link.second = j;
       if (bodies[i].voxels && bodies[j].voxels)
         link.contact = std::make_unique<CollisionLink>(*bodies[i].voxels, *bodies[j].voxels);
+      if (link.contact && bodies[i].mesh) link.contact->find_by_triangles(*bodies[i].mesh, *bodies[j].mesh);
       if (link.contact) make_hybrid(link);
       links.push_back(std::move(link));
     }

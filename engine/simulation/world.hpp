@@ -30,6 +30,7 @@ struct Body {
   bool selectable = false;
   Bounds bounds_B;                                ///< of its meshes, body coordinates
   std::shared_ptr<const VoxelBody> voxels;        ///< null: nothing that moves can come near it
+  std::unique_ptr<const MeshTree> mesh;           ///< null: not the way in which contacts are found
   Hybrid hybrid = Hybrid::off;                    ///< its method
   bool hybrid_enabled = true;                     ///< false: as if it were off
   std::unique_ptr<EntitySets> entities;           ///< null: no b-rep that the method could use
@@ -108,6 +109,7 @@ struct Simulation::Implementation {
   Implementation(Scene scene, const SimulationOptions& options);
 
   // world.cpp: how a scene becomes this
+  void choose_methods(const Scene& scene);
   void place_bodies(const Scene& scene);
   void voxelize_bodies(const Scene& scene);
   void make_links();

@@ -11,7 +11,7 @@ namespace {
 TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   WrittenScenario written(R"(defineSimulationParameters{
     timestep = 0.002, gravity = {0, 0, -9.81}, seed = 7, duration = 3, frameRate = 30, integrator = "implicit",
-    hybrid = "off", alignment = "pavlik", reduction = "exactly-one", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
+    hybrid = "off", contact = "fcl", alignment = "pavlik", reduction = "exactly-one", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
     limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, passiveContacts = false, graspDistance = 0.2 })");
   const Scene& scene = written.build();
   const SimulationParameters& p = scene.parameters;
@@ -22,6 +22,7 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   EXPECT_EQ(p.frame_rate, 30);
   EXPECT_EQ(p.integrator, Integrator::implicit);
   EXPECT_EQ(p.hybrid, Hybrid::off);
+  EXPECT_EQ(p.contact, ContactMethod::fcl);
   EXPECT_EQ(p.alignment, AlignmentMeasure::pavlik);
   EXPECT_EQ(p.reduction, Reduction::exactly_one);
   EXPECT_EQ(p.max_stiffness, 1000);
@@ -57,6 +58,8 @@ TEST(DefineSimulationParameters, RefusesWhatIsWrongWithPlaceAndRemedy) {
   EXPECT_NE(refusal_of("defineSimulationParameters{integrator = 'implicit-euler'}").find("did you mean 'implicit'?"),
             std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{hybrid = 'blended'}").find("did you mean 'blend'?"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("defineSimulationParameters{contact = 'bullet'}").find("; known: fcl, voxmap"),
             std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{alignment = 'bytype'}").find("did you mean 'by-type'?"),
             std::string::npos);
