@@ -68,9 +68,8 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
     verisim::query(*map_, *shell_, X_MP, contacts_, cost);
 }
 
-void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+void CollisionLink::stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
                             double dt) {
-  if (contacts_.size == 0) return;
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
   const Matrix3d R_MW = map.X_WB.rotation.toRotationMatrix().transpose();
@@ -92,13 +91,38 @@ void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const
     stiffness_ = std::min(stiffness_, y * y / (dt * dt * lambda));
   }
   damping_ = lambda > 0 ? 2 * zeta * std::sqrt(stiffness_ / lambda) : 0;
-
-  const Vector6d relative = twist_at(points, points.p_WC) - twist_at(map, points.p_WC);
-  apply_penalty(contacts_, about_, {R_MW * relative.head<3>(), R_MW * relative.tail<3>()}, stiffness_, damping_);
 }
 
-void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, Matrices matrices) {
+Twist CollisionLink::relative_twist(const LinkBody& first, const LinkBody& second) const {
+  const LinkBody& map = first_is_map_ ? first : second;
+  const LinkBody& points = first_is_map_ ? second : first;
+  const Matrix3d R_MW = map.X_WB.rotation.toRotationMatrix().transpose();
+  const Vector6d relative = twist_at(points, points.p_WC) - twist_at(map, points.p_WC);
+  return {R_MW * relative.head<3>(), R_MW * relative.tail<3>()};
+}
+
+void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+                            double dt) {
   if (contacts_.size == 0) return;
+  stiffen(first, second, parameters, dt);
+  apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
+}
+
+void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices) {
+  if (contacts_.size == 0) return;
+  share_out(first, second, sum(contacts_, about_), with_matrices);
+}
+
+void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+                                    double dt) {
+  if (contacts_.size == 0) return;
+  stiffen(first, second, parameters, dt);
+  const Twist relative = relative_twist(first, second);
+  share_out(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true);
+}
+
+void CollisionLink::share_out(const LinkBody& first, const LinkBody& second, const ContactSum& total,
+                              bool with_matrices) {
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
   LinkSide& on_points = first_is_map_ ? on_second_ : on_first_;
@@ -106,12 +130,10 @@ void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, Matric
   const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
   const Vector3d arm = points.p_WC - map.p_WC;
 
-  const ContactSum total = sum(contacts_, about_);
   depth_max_ = total.depth_max;
   on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
   on_map.wrench = {-on_points.wrench.force, -(on_points.wrench.torque + arm.cross(on_points.wrench.force))};
-  if (matrices == Matrices::none) return;
-  if (matrices == Matrices::turned) W_ = contact_matrix(contacts_, about_);
+  if (!with_matrices) return;
 
   const Matrix6d W_points = rotated(W_, R_WM);
   const Matrix6d T = shift_of_arm(arm);

@@ -53,10 +53,11 @@ class CollisionLink {
 
   /// Response, part one: stiffness by the stability rule and a penalty force for every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
-  /// Response, part two: sums what the contacts' forces now are. Matrices: also stiffness, damping and drift; `turned`
-  /// if somebody changed the contacts' normals since respond().
-  enum class Matrices : std::uint8_t { none, as_found, turned };
-  void sum_up(const LinkBody& first, const LinkBody& second, Matrices matrices);
+  /// Response, part two: sums what the contacts' forces now are; with matrices, also stiffness, damping and drift.
+  void sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices);
+  /// Both parts in one, with matrices, where all that acts on contacts has acted on their normals: no force of a single
+  /// contact is kept.
+  void respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
 
   [[nodiscard]] const LinkSide& on_first() const { return on_first_; }
   [[nodiscard]] const LinkSide& on_second() const { return on_second_; }
@@ -68,6 +69,12 @@ class CollisionLink {
   [[nodiscard]] bool first_is_map() const { return first_is_map_; }
 
  private:
+  /// Finds W_, stiffness_ and damping_.
+  void stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
+  /// Of the points' body against the map's, at the centre of the points' body, axes of the map's.
+  [[nodiscard]] Twist relative_twist(const LinkBody& first, const LinkBody& second) const;
+  void share_out(const LinkBody& first, const LinkBody& second, const ContactSum& total, bool with_matrices);
+
   const Voxmap* map_;
   const Pointshell* shell_;
   bool first_is_map_;

@@ -87,13 +87,19 @@ void matrix_strands(const ContactList& c, const Vector3d& about_A, MatrixStrands
   }
 }
 
-void penalty_columns(ContactList& c, const PenaltyLaw& law) {
-  const Triple about = broadcast(law.about);
-  const Triple linear = broadcast(law.velocity.linear);
-  const Triple angular = broadcast(law.velocity.angular);
-  const V k = hn::Set(kD, law.stiffness);
-  const V b = hn::Set(kD, law.damping);
-  for (std::size_t i = 0; i < c.size; i += kLanes) {
+/// The penalty law with its numbers in all lanes.
+struct Penalty {
+  Triple about, linear, angular;
+  V k, b;
+
+  explicit Penalty(const PenaltyLaw& law)
+      : about(broadcast(law.about)),
+        linear(broadcast(law.velocity.linear)),
+        angular(broadcast(law.velocity.angular)),
+        k(hn::Set(kD, law.stiffness)),
+        b(hn::Set(kD, law.damping)) {}
+
+  HWY_INLINE Triple force(const ContactList& c, std::size_t i) const {
     const Triple n = {load(c.nx, i), load(c.ny, i), load(c.nz, i)};
     const Triple turning = cross(angular, arm(c, i, about));
     const V along_x = hn::Mul(hn::Add(linear.x, turning.x), n.x);
@@ -102,13 +108,23 @@ void penalty_columns(ContactList& c, const PenaltyLaw& law) {
     const V leaving = hn::Add(hn::Add(along_x, along_y), along_z);
     const V wanted = hn::Sub(hn::Mul(k, load(c.depth, i)), hn::Mul(b, leaving));
     const V strength = hn::IfThenElseZero(hn::Gt(wanted, hn::Zero(kD)), wanted);  // a surface pushes, it never pulls
-    hn::StoreU(hn::DemoteTo(kF, hn::Mul(strength, n.x)), kF, c.fx.data() + i);
-    hn::StoreU(hn::DemoteTo(kF, hn::Mul(strength, n.y)), kF, c.fy.data() + i);
-    hn::StoreU(hn::DemoteTo(kF, hn::Mul(strength, n.z)), kF, c.fz.data() + i);
+    return {hn::Mul(strength, n.x), hn::Mul(strength, n.y), hn::Mul(strength, n.z)};
+  }
+};
+
+void penalty_columns(ContactList& c, const PenaltyLaw& law) {
+  const Penalty penalty(law);
+  for (std::size_t i = 0; i < c.size; i += kLanes) {
+    const Triple f = penalty.force(c, i);
+    hn::StoreU(hn::DemoteTo(kF, f.x), kF, c.fx.data() + i);
+    hn::StoreU(hn::DemoteTo(kF, f.y), kF, c.fy.data() + i);
+    hn::StoreU(hn::DemoteTo(kF, f.z), kF, c.fz.data() + i);
   }
 }
 
-void sum_strands(const ContactList& c, const Vector3d& about_A, SumStrands& out) {
+/// Sums what `force_at` says of each contact.
+template <class ForceAt>
+HWY_INLINE void sum_forces(const ContactList& c, const Vector3d& about_A, const ForceAt& force_at, SumStrands& out) {
   const Triple about = broadcast(about_A);
   for (std::size_t strand = 0; strand < kStrands; strand += kLanes) {
     Triple force = broadcast(Vector3d::Zero());
@@ -116,8 +132,9 @@ void sum_strands(const ContactList& c, const Vector3d& about_A, SumStrands& out)
     V deepest = hn::Zero(kD);
     for (std::size_t i = strand; i < c.size + strand; i += kStrands) {
       const auto real = existing(c, i);
-      const Triple f = {hn::IfThenElseZero(real, load(c.fx, i)), hn::IfThenElseZero(real, load(c.fy, i)),
-                        hn::IfThenElseZero(real, load(c.fz, i))};
+      const Triple any = force_at(i);
+      const Triple f = {hn::IfThenElseZero(real, any.x), hn::IfThenElseZero(real, any.y),
+                        hn::IfThenElseZero(real, any.z)};
       const Triple t = cross(arm(c, i, about), f);
       force = {hn::Add(force.x, f.x), hn::Add(force.y, f.y), hn::Add(force.z, f.z)};
       torque = {hn::Add(torque.x, t.x), hn::Add(torque.y, t.y), hn::Add(torque.z, t.z)};
@@ -127,6 +144,21 @@ void sum_strands(const ContactList& c, const Vector3d& about_A, SumStrands& out)
     for (std::size_t k = 0; k < 6; ++k) hn::StoreU(sums[k], kD, out.wrench[k].data() + strand);
     hn::StoreU(deepest, kD, out.depth.data() + strand);
   }
+}
+
+void sum_strands(const ContactList& c, const Vector3d& about, SumStrands& out) {
+  sum_forces(
+      c, about,
+      [&](std::size_t i) {
+        return Triple{load(c.fx, i), load(c.fy, i), load(c.fz, i)};
+      },
+      out);
+}
+
+void penalty_strands(const ContactList& c, const PenaltyLaw& law, SumStrands& out) {
+  const Penalty penalty(law);
+  sum_forces(
+      c, law.about, [&](std::size_t i) { return penalty.force(c, i); }, out);
 }
 
 }  // namespace verisim::HWY_NAMESPACE
@@ -139,10 +171,19 @@ namespace {
 HWY_EXPORT(matrix_strands);
 HWY_EXPORT(penalty_columns);
 HWY_EXPORT(sum_strands);
+HWY_EXPORT(penalty_strands);
 
 /// The strands' sum, always in this order.
 double tree(const Strands& s) {
   return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+}
+
+ContactSum sum_of(const SumStrands& s) {
+  ContactSum result;
+  result.wrench.force = {tree(s.wrench[0]), tree(s.wrench[1]), tree(s.wrench[2])};
+  result.wrench.torque = {tree(s.wrench[3]), tree(s.wrench[4]), tree(s.wrench[5])};
+  for (const double depth : s.depth) result.depth_max = depth > result.depth_max ? depth : result.depth_max;
+  return result;
 }
 
 }  // namespace
@@ -168,11 +209,16 @@ void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& ve
 ContactSum sum(const ContactList& contacts, const Vector3d& about) {
   SumStrands s;
   HWY_DYNAMIC_DISPATCH(sum_strands)(contacts, about, s);
-  ContactSum result;
-  result.wrench.force = {tree(s.wrench[0]), tree(s.wrench[1]), tree(s.wrench[2])};
-  result.wrench.torque = {tree(s.wrench[3]), tree(s.wrench[4]), tree(s.wrench[5])};
-  for (const double depth : s.depth) result.depth_max = depth > result.depth_max ? depth : result.depth_max;
-  return result;
+  return sum_of(s);
+}
+
+ContactSum penalty_sum(const ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness,
+                       double damping) {
+  VERISIM_ASSERT(stiffness >= 0);
+  VERISIM_ASSERT(damping >= 0);
+  SumStrands s;
+  HWY_DYNAMIC_DISPATCH(penalty_strands)(contacts, {about, velocity, stiffness, damping}, s);
+  return sum_of(s);
 }
 
 }  // namespace verisim

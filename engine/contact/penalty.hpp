@@ -28,4 +28,8 @@ struct ContactSum {
 };
 [[nodiscard]] ContactSum sum(const ContactList& contacts, const Vector3d& about);
 
+/// Both in one pass where nobody acts on single forces in between: these are not kept, nor rounded to single precision.
+[[nodiscard]] ContactSum penalty_sum(const ContactList& contacts, const Vector3d& about, const Twist& velocity,
+                                     double stiffness, double damping);
+
 }  // namespace verisim

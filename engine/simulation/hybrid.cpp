@@ -84,9 +84,16 @@ Pose Simulation::Implementation::relative_pose(const Link& link) const {
   return link.contact->first_is_map() ? X_W1.inverse() * X_W2 : X_W2.inverse() * X_W1;
 }
 
-void Simulation::Implementation::restore(Link& link) {
-  const bool turn_normals = parameters.integrator == Integrator::implicit;
-  note(link, link.hybrid->restore(link.contact->contacts(), relative_pose(link), turn_normals));
+/// An implicit step needs the matrices of restored contacts, so it restores their normals before anything is computed
+/// from them. An explicit one needs forces alone, and its stiffness stays that of the voxels' contacts.
+/// Returns whether a constraint holds anywhere: else the normals are the voxels'.
+bool Simulation::Implementation::restore_normals(Link& link) {
+  const RestoreResult result = link.hybrid->restore_normals(link.contact->contacts(), relative_pose(link));
+  note(link, result);
+  return result.restored > 0;
+}
+void Simulation::Implementation::restore_forces(Link& link) {
+  note(link, link.hybrid->restore_forces(link.contact->contacts(), relative_pose(link)));
 }
 
 /// Faas's response: the collision's, mixed with the pull of a spring towards where the constraints would have the body.

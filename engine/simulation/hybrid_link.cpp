@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/base/lanes.hpp"
 #include "engine/voxel/association.hpp"
 
 namespace verisim {
@@ -48,7 +47,6 @@ HybridLink::HybridLink(const Side& map, const Side& points, const ConstraintOpti
   const std::size_t capacity = points.voxels->shell.size();
   set_a_.resize(capacity);
   set_b_.resize(capacity);
-  size_.resize(capacity + ContactList::kPadding);
 }
 
 ContactColumns HybridLink::columns_of(const ContactList& contacts) {
@@ -71,40 +69,22 @@ ContactColumns HybridLink::columns_of(const ContactList& contacts) {
   return columns;
 }
 
-RestoreResult HybridLink::restore(ContactList& contacts, const Pose& X_AB, bool turn_normals) {
+RestoreResult HybridLink::restore_forces(ContactList& contacts, const Pose& X_AB) {
   constraints_.begin_frame(X_AB);
   ContactColumns columns = columns_of(contacts);
   columns.fx = contacts.fx.data();
   columns.fy = contacts.fy.data();
   columns.fz = contacts.fz.data();
-  if (turn_normals) keep_sizes(contacts);
-  const RestoreResult result = constraints_.restore_contacts(columns);
-  if (turn_normals && result.restored > 0) turn(contacts);
-  return result;
+  return constraints_.restore_contacts(columns);
 }
 
-/// Sizes of forces that still lie along their contacts' normals. Columns are padded: whole vectors may be read.
-void HybridLink::keep_sizes(const ContactList& c) {
-  for (std::uint32_t i = 0; i < c.size; i += 4) {
-    const Float4 size =
-        load4(&c.fx[i]) * load4(&c.nx[i]) + load4(&c.fy[i]) * load4(&c.ny[i]) + load4(&c.fz[i]) * load4(&c.nz[i]);
-    store4(size, &size_[i]);
-  }
-}
-
-void HybridLink::turn(ContactList& c) const {
-  const Float4 zero = {0, 0, 0, 0};
-  const Float4 one = {1, 1, 1, 1};
-  const auto turn_column = [&](const std::vector<float>& f, std::vector<float>& n) {
-    for (std::uint32_t i = 0; i < c.size; i += 4) {
-      const Float4 size = load4(&size_[i]);
-      const auto pushes = size > zero;
-      store4(pushes ? load4(&f[i]) / (pushes ? size : one) : load4(&n[i]), &n[i]);
-    }
-  };
-  turn_column(c.fx, c.nx);
-  turn_column(c.fy, c.ny);
-  turn_column(c.fz, c.nz);
+RestoreResult HybridLink::restore_normals(ContactList& contacts, const Pose& X_AB) {
+  constraints_.begin_frame(X_AB);
+  ContactColumns columns = columns_of(contacts);
+  columns.fx = contacts.nx.data();
+  columns.fy = contacts.ny.data();
+  columns.fz = contacts.nz.data();
+  return constraints_.restore_contacts(columns);
 }
 
 RestoreResult HybridLink::look_up(const ContactList& contacts, const Pose& X_AB) {

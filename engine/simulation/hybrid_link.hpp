@@ -27,9 +27,12 @@ class HybridLink {
   };
   HybridLink(const Side& map, const Side& points, const ConstraintOptions& options);
 
-  /// Restores the contacts' forces in place. With `turn_normals` the normals become the directions in which what is
-  /// left of each force grows with depth, as an implicit step needs them: no longer of unit length.
-  RestoreResult restore(ContactList& contacts, const Pose& X_AB, bool turn_normals);
+  /// Restores the contacts' forces in place.
+  RestoreResult restore_forces(ContactList& contacts, const Pose& X_AB);
+  /// The same before there are forces: of each normal stays what the same restoration leaves of a force along it, and
+  /// so of unit length or shorter. The law is the same for a force of any size: what is computed from these normals
+  /// is restored. That holds for matrices too, and a damper along them leaves free what the constraint leaves free.
+  RestoreResult restore_normals(ContactList& contacts, const Pose& X_AB);
   /// Looks all contacts up and leaves them as they are.
   RestoreResult look_up(const ContactList& contacts, const Pose& X_AB);
   /// What this frame's contacts stand under. Valid until the next restore or look_up.
@@ -43,13 +46,10 @@ class HybridLink {
 
  private:
   [[nodiscard]] ContactColumns columns_of(const ContactList& contacts);
-  void keep_sizes(const ContactList& contacts);
-  void turn(ContactList& contacts) const;
 
   Side map_, points_;
   ConstraintLink constraints_;
   std::vector<FeatureSetId> set_a_, set_b_;     ///< of this frame's contacts
-  std::vector<float> size_;                     ///< of the forces before restoration [N]
   std::vector<bool> map_known_, points_known_;  ///< by set id
 };
 

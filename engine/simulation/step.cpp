@@ -157,13 +157,15 @@ void Simulation::Implementation::respond() {
     // An implicit step takes the other body as standing still in its own step: of two that move, each would answer with
     // another force. Only against what does not move may the stiffness go beyond the explicit bound.
     penalty.stabilize = !implicit || (!first.inverse_mass.isZero(0) && !second.inverse_mass.isZero(0));
-    link.contact->respond(first, second, penalty, dt);
-    using Matrices = CollisionLink::Matrices;
     const bool restored = link.method == Hybrid::restore;
-    if (restored) restore(link);
+    if (restored && implicit && restore_normals(link)) {
+      link.contact->respond_at_once(first, second, penalty, dt);
+    } else {
+      link.contact->respond(first, second, penalty, dt);
+      if (restored && !implicit) restore_forces(link);
+      link.contact->sum_up(first, second, implicit);
+    }
     if (link.method != Hybrid::off) bodies[link.first].reshaped = bodies[link.second].reshaped = true;
-    link.contact->sum_up(first, second,
-                         !implicit ? Matrices::none : (restored ? Matrices::turned : Matrices::as_found));
     link.depth_max = link.contact->depth_max();
     LinkSide on_first = link.contact->on_first();
     LinkSide on_second = link.contact->on_second();

@@ -129,7 +129,8 @@ struct Simulation::Implementation {
   [[nodiscard]] Hybrid method_of(const Link& link) const;
   [[nodiscard]] bool moves(const Body& body) const;
   [[nodiscard]] Pose relative_pose(const Link& link) const;
-  void restore(Link& link);
+  bool restore_normals(Link& link);
+  void restore_forces(Link& link);
   void blend(Link& link, LinkSide& on_first, LinkSide& on_second);
   void note(Link& link, const RestoreResult& result);
   void solve_exactly();

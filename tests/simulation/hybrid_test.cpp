@@ -96,6 +96,27 @@ TEST(Hybrid, RestoreTakesAwayTheForceAlongTheAxis) {
   EXPECT_GT(std::abs(frame_of(standing_pin(Hybrid::off)).force.z()), 1) << "nothing to be restored";
 }
 
+// An implicit step restores normals before there are forces, an explicit one the forces: one law. Nobody holds the pin,
+// so both take the full stiffness. Normals, forces and what is left of them are floats: three roundings of 2^-24 in
+// each force, none of which exceeds two layers of voxels times the stiffness; arms are below 0.15 m.
+TEST(Hybrid, RestoresNormalsAsItRestoresForces) {
+  for (const double x : {0.0, 0.0045, 0.0052}) {
+    for (const double height : {0.06, 0.1, 0.14}) {  // the last: standing half in the rim
+      Scene scene = standing_pin(Hybrid::restore);
+      scene.bodies[kPin].X_WB.position = {x, 0.001, height};
+      const Frame normals = frame_of(scene);
+      scene.parameters.integrator = Integrator::semi_implicit;
+      const Frame forces = frame_of(scene);
+      const double most = 2 * 0.0045 * scene.parameters.contact_stiffness;
+      const double rounding = forces.of_link<std::uint32_t>("contacts") * most * 3 * 0x1p-24;
+      EXPECT_LE((normals.force - forces.force).norm(), rounding);
+      EXPECT_LE((normals.torque - forces.torque).norm(), 0.15 * rounding);
+      EXPECT_EQ(normals.constraint(), forces.constraint());
+      EXPECT_GT(forces.of_link<std::uint32_t>("contacts"), 0U);
+    }
+  }
+}
+
 /// Coaxial in a hole that is 50 um wider: nothing touches, but voxels of 4.5 mm are up to two layers deep in the wall.
 Scene coaxial_pin(Hybrid hybrid, double turn) {
   static const BodyDescription thick = [] {
