@@ -179,7 +179,10 @@ class Association : public ::testing::TestWithParam<Case> {
               << " sets, " << report.stand_ins << " stand-ins; kernel asked for " << compared.distances
               << " distances: " << compared.equal << " voxels equal, " << compared.undecided << " undecided, "
               << compared.stand_ins << " stand-ins\n";
-    EXPECT_GT(compared.equal, 9 * (compared.undecided + compared.stand_ins));
+    // Where surfaces touch a box within rounding, and where triangles bulge into a voxel that no surface enters.
+    const std::size_t voxels = compared.equal + compared.undecided + compared.stand_ins;
+    EXPECT_LE(compared.undecided, voxels / 1000);
+    EXPECT_LE(compared.stand_ins, voxels / 100);
   }
 };
 
