@@ -78,10 +78,12 @@ struct Feature {
   double half_width = 0;             ///< of a segment, in t
   double reach = 0;                  ///< m, half the length of a segment
   double stiffness = 0;              ///< N/m of one segment
-  std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row
+  std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row; at most kGroupMax
   std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; must contain the place of contact
   bool against_round_only = false;   ///< axes of pins: their ends decide against everything else
 };
+
+inline constexpr std::uint32_t kGroupMax = 4;
 
 /// Neighbouring segments of one feature, as the search takes them: at most kRun samples.
 struct Run {

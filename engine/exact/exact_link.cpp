@@ -11,7 +11,8 @@ Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d&
   return twist.linear + twist.angular.cross(p_W - body.p_WC);
 }
 
-SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, bool mover_is_second) {
+SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, double size,
+                     bool mover_is_second) {
   SearchFrame f;
   const Pose X_BM = base.X_WB.inverse() * mover.X_WB;
   f.R = X_BM.rotation.toRotationMatrix();
@@ -28,6 +29,7 @@ SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt,
   f.p_WB = base.X_WB.position;
   f.dt = dt;
   f.margin = margin;
+  f.size = size;
   f.mover_is_second = mover_is_second;
   return f;
 }
@@ -44,6 +46,9 @@ ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<con
     : first_(std::move(first)), second_(std::move(second)), rows_(rows_max) {
   VERISIM_ASSERT(first_ != nullptr);
   VERISIM_ASSERT(second_ != nullptr);
+  size_ = std::numeric_limits<double>::infinity();
+  for (const auto& body : {first_, second_})
+    if (!body->run_tree.nodes.empty()) size_ = std::min(size_, body->run_tree.nodes[0].half.norm());
   // Each step down either tree leaves one pair behind; the trees halve their items.
   constexpr std::size_t kDepthMax = 64;
   stack_.reserve(2 * kDepthMax);
@@ -54,8 +59,8 @@ void ExactLink::find(const BodyMotion& first, const BodyMotion& second, double d
   cost_ = {};
   depth_max_ = 0;
   if (!is_finite(first) || !is_finite(second)) return;
-  const double a = search(*second_, *first_, frame_of(second, first, dt, margin, true), stack_, rows_, cost_);
-  const double b = search(*first_, *second_, frame_of(first, second, dt, margin, false), stack_, rows_, cost_);
+  const double a = search(*second_, *first_, frame_of(second, first, dt, margin, size_, true), stack_, rows_, cost_);
+  const double b = search(*first_, *second_, frame_of(first, second, dt, margin, size_, false), stack_, rows_, cost_);
   depth_max_ = std::max(a, b);
 }
 

@@ -12,9 +12,18 @@
 //     velocity says which that is;
 //   - where bodies lie flush most samples are near a face that decides nothing there, because the face across an edge
 //     does or because it looks the wrong way: these are told a run at a time and not tried one by one;
+//   - a group of segments has one row, at the place that will be nearest; where the group lies flush and is pressed on,
+//   so
+//     that its other end may be instead, that end has one too, and where the nearest place hardly holds, the firmest;
 //   - a place that cannot be the nearest because the faces there look the wrong way counts less and less, and not at
 //     all from 40 degrees on.
-// Every row appears with a gap of the margin or more and so without force.
+// Every row appears with a gap of the margin or more and so without force, but for those of a group's ends.
+//
+// Rows are straight where motion and surfaces are curved. What they let through within one step, and take back in the
+// next, is half of how far the place moves times how far the normal turns: (v dt)^2 / 2 rho for a place that slides
+// with v along a wall with radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r.
+// Where two rims of nearly the same radius cross, their crossing runs along them faster than either moves: light plates
+// that fall over a hole's rim at 0.1 to 2 m/s are let through by up to 4 um.
 #pragma once
 
 #include <memory>
@@ -58,6 +67,7 @@ class ExactLink {
   std::shared_ptr<const ExactBody> first_, second_;
   RowList rows_;
   SearchCost cost_;
+  double size_ = 0;  ///< m, half the diagonal of the smaller body
   double depth_max_ = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> stack_;
 };

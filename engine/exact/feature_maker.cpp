@@ -9,7 +9,6 @@ namespace verisim::exact {
 namespace {
 
 constexpr double kSegmentMax = pinned::kPi / 8;  // rad: the search's series for sine and cosine are made for half of it
-constexpr int kGroup = 4;                        // segments to a row
 constexpr double kGroupAngle = 0.5;              // rad
 
 /// A sample before it is stored.
@@ -79,8 +78,9 @@ Feature feature_of(const Cut& cut, const BodyOptions& options) {
   f.reach = f.half_width * std::max(cut.x.norm(), cut.y.norm());
   f.stiffness = 2 * f.reach * options.line_stiffness;
   const bool is_arc = cut.kind == Feature::Kind::arc;
-  f.group =
-      is_arc ? static_cast<std::uint32_t>(std::clamp(static_cast<int>(kGroupAngle / cut.width), 1, kGroup)) : kGroup;
+  f.group = is_arc ? static_cast<std::uint32_t>(
+                         std::clamp(static_cast<int>(kGroupAngle / cut.width), 1, static_cast<int>(kGroupMax)))
+                   : kGroupMax;
   return f;
 }
 

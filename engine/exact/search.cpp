@@ -11,6 +11,7 @@ constexpr double kLeanFree = 0.42;  // 25 degrees
 constexpr double kLeanNone = 0.64;  // 40 degrees
 // A segment that slopes towards the surface touches with a part of its length only.
 constexpr double kTouching = 1e-6;  // m: what is as near as this counts as touching
+constexpr double kFirm = 0.5;       // share of its stiffness below which a place does not stand for its group alone
 
 class Search {
  public:
@@ -27,7 +28,11 @@ class Search {
   [[nodiscard]] double lean_weight(std::uint32_t sample, const Vector3d& normal) const;
   [[nodiscard]] double lean_weight_in_mover(std::uint32_t sample, const Vector3d& n) const;
   [[nodiscard]] static double touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count);
-  void add(const Candidate& c, const Feature& feature, double weight, std::uint32_t count, std::uint32_t face);
+  [[nodiscard]] bool measure_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
+                                       Candidate& c);
+  void add_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> about, int side,
+               std::uint32_t face);
+  void add(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
 
   const Meeting meeting_;
   RowList& rows_;
@@ -94,37 +99,84 @@ void Search::meet(std::uint32_t r, std::uint32_t face) {
   }
 }
 
-/// One row for that of a group's samples, of those that are near enough and that the face admits, which will be nearest
-/// at the end of the step. `ahead`: how near about; used up.
+/// A row for that of a group's samples, of those that are near enough and that the face admits, which will be nearest
+/// at the end of the step if nothing comes between. Where that one hardly holds, as a segment's end on a slope, the
+/// firmest of those that will touch holds the rest. `ahead`: how near about; used up.
 void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                         std::span<double> ahead, std::uint32_t face) {
-  const SearchFrame& f = meeting_.frame;
-  const Feature& feature = *placed.feature;
-  const PreciseSurface& surface = *meeting_.base.faces[face].surface;
+  const Meeting& m = meeting_;
+  const auto count = static_cast<std::uint32_t>(ahead.size());
+  std::array<double, kGroupMax> about;
+  std::copy(ahead.begin(), ahead.end(), about.begin());
   Candidate best;
+  Candidate firm;
   best.gap_ahead = kNever;
+  firm.weight = 0;
   while (true) {
     const auto next = std::min_element(ahead.begin(), ahead.end());
-    if (!(*next < best.gap_ahead)) break;
+    const bool is_firm = best.gap_ahead == kNever || best.weight >= kFirm;
+    if (!(*next < (is_firm ? best.gap_ahead : std::max(best.gap_ahead, 0.0)))) break;
     Candidate c;
     c.group = begin;
     c.sample = begin + static_cast<std::uint32_t>(next - ahead.begin());
     *next = kNever;
-    ++cost_.slides;
-    c.place = slide(curve, meeting_.mover.sample_c[c.sample], meeting_.mover.sample_s[c.sample], feature.half_width);
-    c.p = placed.point(c.place);
-    c.at = surface.at(c.p);
-    c.gap = c.at.distance - feature.radius;
-    if (c.gap >= f.margin || c.gap < -meeting_.base.options.spacing) continue;
-    c.normal = c.at.normal;
-    if (!admit(meeting_, placed, face, c) || c.gap >= f.margin) continue;
-    c.gap_ahead = c.gap + c.normal.dot(meeting_.moved(c.p, f.twist));
+    c.place = slide(curve, m.mover.sample_c[c.sample], m.mover.sample_s[c.sample], placed.feature->half_width);
+    if (!measure_candidate(placed, face, count, c)) continue;
     if (c.gap_ahead < best.gap_ahead) best = c;
+    if (c.gap_ahead < 0 && c.weight > firm.weight) firm = c;
   }
   if (best.gap_ahead == kNever) return;
-  const auto count = static_cast<std::uint32_t>(ahead.size());
-  const double share = touching_share(placed, best, count);
-  add(best, feature, best.weight * share * lean_weight(best.sample, best.normal), count, face);
+  add(placed, best, count, face);
+  if (best.weight < kFirm && firm.weight > best.weight) {
+    firm.weight -= best.weight;
+    add(placed, firm, count, face);
+  }
+  if (best.gap_ahead >= 0) return;
+  for (const int side : {-1, 1}) add_end(placed, best, std::span(about).first(count), side, face);
+}
+
+/// Fills in what a candidate's sample and place say, as one that stands for `count` segments. False: there is no row.
+bool Search::measure_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count, Candidate& c) {
+  const SearchFrame& f = meeting_.frame;
+  ++cost_.slides;
+  c.p = placed.point(c.place);
+  c.at = meeting_.base.faces[face].surface->at(c.p);
+  c.gap = c.at.distance - placed.feature->radius;
+  if (c.gap >= f.margin || c.gap < -meeting_.base.options.spacing) return false;
+  c.normal = c.at.normal;
+  if (!admit(meeting_, placed, face, c) || c.gap >= f.margin) return false;
+  c.gap_ahead = c.gap + c.normal.dot(meeting_.moved(c.p, f.twist));
+  c.weight *= touching_share(placed, c, count) * lean_weight(c.sample, c.normal);
+  return true;
+}
+
+/// Where a group lies flush and is pressed on, the nearest of its places is any of them: a row there alone lets the
+/// body tip over it, and from one frame to the next the place changes. So its end on the given side has a row of one
+/// segment if it may be nearer than the nearest at the end of the step: what stops a place by so much turns the bodies
+/// by about as much over their size. If the face does not admit the end, the outermost segment's end that it does.
+void Search::add_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> about, int side,
+                     std::uint32_t face) {
+  const double half = placed.feature->half_width;
+  const int count = static_cast<int>(about.size());
+  const int here = static_cast<int>(best.sample - best.group);
+  const auto is_flush = [&](double gap_ahead, double away) {
+    return gap_ahead < best.gap_ahead * (1 - away / meeting_.frame.size);
+  };
+  for (int i = side > 0 ? count - 1 : 0; side * (i - here) >= 0; i -= side) {
+    const double way = side * (2 * half * (i - here) - best.place.t) + half;  // in t, from the nearest place
+    if (2 * way < half * count) return;                                       // a quarter of the group
+    const double ahead = about[static_cast<std::size_t>(i)];
+    if (ahead == kNever) continue;
+    if (!is_flush(ahead, way / half * placed.feature->reach)) return;
+    Candidate c;
+    c.group = best.group;
+    c.sample = best.group + static_cast<std::uint32_t>(i);
+    c.place =
+        place_at(placed.is_arc(), meeting_.mover.sample_c[c.sample], meeting_.mover.sample_s[c.sample], side * half);
+    if (!measure_candidate(placed, face, 1, c)) continue;
+    if (is_flush(c.gap_ahead, (c.p - best.p).norm())) add(placed, c, 1, face);
+    return;
+  }
 }
 
 /// How much of a group's length touches: the overlap at its nearest place is used up where the group, sloping, comes
@@ -155,11 +207,13 @@ bool Search::looks_away(const Run& run, const Vector3d& normal) const {
   return true;
 }
 
-void Search::add(const Candidate& c, const Feature& feature, double weight, std::uint32_t count, std::uint32_t face) {
+/// The row of a candidate that stands for `count` segments.
+void Search::add(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
   const SearchFrame& f = meeting_.frame;
-  if (weight == 0) return;
+  const Feature& feature = *placed.feature;
+  if (c.weight == 0) return;
   const double point = meeting_.mover.options.line_stiffness * meeting_.mover.options.point_length;
-  const double stiffness = weight * (count * feature.stiffness + c.edge_share * point);
+  const double stiffness = c.weight * (count * feature.stiffness + c.edge_share * point);
   const Vector3d normal = f.R_WB * c.normal;
   const Vector3d place = f.R_WB * (c.p - feature.radius * c.normal) + f.p_WB;
   const auto faces = static_cast<std::uint32_t>(meeting_.base.faces.size());

@@ -15,6 +15,7 @@ struct SearchFrame {
   Matrix3d R_WB;  ///< base to world
   Vector3d p_WB;  ///< m
   double dt, margin;
+  double size;  ///< m, half the diagonal of the smaller body
   bool mover_is_second;
 };
 
