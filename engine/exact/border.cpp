@@ -138,7 +138,8 @@ bool admit(const Meeting& meeting, const PlacedFeature& placed, std::uint32_t fa
   const Feature& feature = *placed.feature;
   const Vector3d foot = c.p - c.at.distance * c.at.normal;
   if (feature.own_face != kNoFace) {
-    const Vector3d touching = meeting.frame.R.transpose() * (c.p - feature.radius * c.at.normal - meeting.frame.p);
+    const Vector3d touching =
+        meeting.frame.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - meeting.frame.p);
     const double within = std::abs(meeting.mover.faces[feature.own_face].surface->at(touching).distance);
     c.weight = std::min(1.0, (kOwnNone - within) / (kOwnNone - kOwnFree));
     return c.weight > 0 && is_on_face(meeting.base, face, foot) &&

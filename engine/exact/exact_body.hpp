@@ -2,10 +2,10 @@
 // the features that can touch another body's faces first. Made once, at load; constant afterwards.
 //
 // Body coordinates [m]. A feature is a curve (or point) of the body that carries a ball of some radius: an edge or a
-// corner (radius 0), the middle of a ball, the ring of a torus, the axis of a pin. Along straight lines the distance to
-// a plane, a hole or a conical hole is linear or concave, so where a pin's or a cone's side meets one of those, the
-// side's ends decide: its edges are enough. What is left are round outsides against round outsides, and balls and
-// rings.
+// corner (radius 0), the middle of a ball, the ring of a torus, the axis of a pin or cone (along which the balls that
+// fill a cone grow). Along straight lines the distance to a plane, a hole or a conical hole is linear or concave, so
+// where a pin's or a cone's side meets one of those, the side's ends decide: its edges are enough. What is left are
+// round outsides against round outsides, and balls and rings.
 //
 // A curve is cut into segments no longer than the spacing. In the search a segment's sample slides along its own
 // segment to the nearest place (exact_link.hpp); a group of neighbouring segments makes one row, that of the nearest of
@@ -74,13 +74,15 @@ struct Feature {
   Kind kind = Kind::point;
   /// line: p(t) = origin + t x.  arc: p(t) = origin + cos t x + sin t y (circles and ellipses).  point: origin.
   Vector3d origin = Vector3d::Zero(), x = Vector3d::Zero(), y = Vector3d::Zero();
-  double radius = 0;                 ///< m, of the ball
+  double radius = 0;                 ///< m, of the ball; of a line's at t = 0
+  double growth = 0;                 ///< of a line's radius with t
   double half_width = 0;             ///< of a segment, in t
   double reach = 0;                  ///< m, half the length of a segment
   double stiffness = 0;              ///< N/m of one segment
   std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row; at most kGroupMax
   std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; must contain the place of contact
-  bool against_round_only = false;   ///< axes of pins: their ends decide against everything else
+  bool against_round_only = false;   ///< axes of pins and cones: their ends decide against everything else
+  [[nodiscard]] double radius_at(double c) const { return radius + growth * c; }  ///< c as in sample_c
 };
 
 inline constexpr std::uint32_t kGroupMax = 4;

@@ -23,7 +23,7 @@
 // next, is half of how far the place moves times how far the normal turns: (v dt)^2 / 2 rho for a place that slides
 // with v along a wall with radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r.
 // Where two rims of nearly the same radius cross, their crossing runs along them faster than either moves: light plates
-// that fall over a hole's rim at 0.1 to 2 m/s are let through by up to 4 um.
+// that fall over a hole's rim at 0.1 to 2 m/s are let through by up to 7 um.
 #pragma once
 
 #include <memory>

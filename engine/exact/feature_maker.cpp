@@ -108,6 +108,42 @@ void add_point(ExactBody& body, const Vector3d& point, double radius, std::uint3
   add(body, f, std::span(&sample, 1));
 }
 
+/// The balls that fill a cone touch it all around at right angles to its side: a ball whose middle is at t touches at
+/// the height v with t = v + r(v) tan, and has the radius (r(0) + t tan) cos.
+void add_cone_axis(ExactBody& body, const Cone& cone, const std::array<double, 2>& range, std::uint32_t number) {
+  const double cosine = pinned::cos(cone.half_angle);
+  const double tangent = pinned::tan(cone.half_angle);
+  const auto middle = [&](double v) { return v + std::max(0.0, cone.radius + v * tangent) * tangent; };
+  Cut cut{Feature::Kind::line, cone.point, cone.direction, Vector3d::Zero()};
+  cut_evenly(cut, middle(range[0]), middle(range[1]), body.options.spacing / cosine);
+  std::vector<Sample> samples;
+  for (int i = 0; i < cut.segments; ++i) samples.push_back(cut.sample_at(cut.from + (i + 0.5) * cut.width));
+  Feature f = feature_of(cut, body.options);
+  f.radius = cone.radius * cosine;
+  f.growth = pinned::sin(cone.half_angle);
+  f.stiffness *= cosine;  // a segment's length along the cone's side
+  f.own_face = number;
+  f.against_round_only = true;
+  if (!samples.empty()) add(body, f, samples);
+}
+
+void add_apex(ExactBody& body, const Cone& cone, double at) {
+  Sample sample;
+  const double out = pinned::sin(cone.half_angle);
+  const double along = pinned::cos(cone.half_angle);
+  const Vector3d y = cone.direction.cross(cone.x_axis);
+  for (const Vector3d& across : {cone.x_axis, Vector3d(-cone.x_axis), y, Vector3d(-y)})
+    sample.wedge.emplace_back(along * cone.direction + out * across);
+  add_point(body, cone.point + at * cone.direction, 0, kNoFace, sample);
+}
+
+void add_cone(ExactBody& body, const Cone& cone, const std::array<double, 2>& range, std::uint32_t number) {
+  constexpr double kNear = 1e-9;  // m: what rounding of the bounds may leave
+  add_cone_axis(body, cone, range, number);
+  const double to_apex = -cone.radius / pinned::tan(cone.half_angle);
+  if (range[0] < to_apex + kNear) add_apex(body, cone, to_apex);
+}
+
 /// Moves a point onto both surfaces. Their normals are not parallel along an edge that has a fold; along a smooth one
 /// the point goes as near as the two allow.
 Vector3d put_onto(const PreciseSurface* first, const PreciseSurface* second, Vector3d p) {
@@ -186,17 +222,7 @@ void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) 
   } else if (const auto* pin = std::get_if<Cylinder>(&face.surface); pin != nullptr && !pin->hole) {
     add_curve(Line{pin->point, pin->direction}, face.v_range, pin->radius, true);
   } else if (const auto* cone = std::get_if<Cone>(&face.surface); cone != nullptr && !cone->hole) {
-    const double to_apex = -cone->radius / pinned::tan(cone->half_angle);
-    constexpr double kNear = 1e-9;  // m: what rounding of the bounds may leave
-    if (face.v_range[0] < to_apex + kNear) {
-      Sample sample;
-      const double out = pinned::sin(cone->half_angle);
-      const double along = pinned::cos(cone->half_angle);
-      const Vector3d y = cone->direction.cross(cone->x_axis);
-      for (const Vector3d& across : {cone->x_axis, Vector3d(-cone->x_axis), y, Vector3d(-y)})
-        sample.wedge.emplace_back(along * cone->direction + out * across);
-      add_point(body, cone->point + to_apex * cone->direction, 0, kNoFace, sample);
-    }
+    add_cone(body, *cone, face.v_range, number);
   }
 }
 
@@ -228,8 +254,8 @@ void take_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
 Bounds bounds_of(const ExactBody& body, const Run& run) {
   const Feature& f = body.features[run.feature];
   Bounds bounds;
-  const Vector3d margin = Vector3d::Constant(f.radius + f.reach);
   for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    const Vector3d margin = Vector3d::Constant(f.radius_at(body.sample_c[i]) + (1 + f.growth) * f.reach);
     const Vector3d p = f.origin + body.sample_c[i] * f.x + body.sample_s[i] * f.y;
     bounds.include(p - margin);
     bounds.include(p + margin);

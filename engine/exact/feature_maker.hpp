@@ -16,7 +16,7 @@ namespace verisim::exact {
 void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made, const std::vector<Vector3d>& points,
                        const std::array<double, 2>& side_sign);
 
-/// A ball's middle, a torus' ring, a pin's axis, a cone's apex.
+/// A ball's middle, a torus' ring, a pin's axis, a cone's axis and apex.
 void add_face_features(ExactBody& body, const Face& face, std::uint32_t number);
 
 /// One edge's end, for take_corners.

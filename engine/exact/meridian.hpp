@@ -103,9 +103,9 @@ inline void with_measure(const CurveFromSurface& curve, F&& f) {
   }
 }
 
-/// How near a segment comes to a surface if the distance is a parabola over it.
-inline double nearest_of(const Measure& m, double half_width) {
-  const double way = std::abs(m.slope);
+/// How near a segment comes to a surface if the distance is a parabola over it, less `growth` times t.
+inline double nearest_of(const Measure& m, double half_width, double growth) {
+  const double way = std::abs(m.slope - growth);
   const double to_end = m.bend * half_width > way ? way / m.bend : half_width;
   return m.distance - to_end * (way - 0.5 * m.bend * to_end);
 }

@@ -80,11 +80,12 @@ void Search::meet(std::uint32_t r, std::uint32_t face) {
   const PlacedFeature placed{&feature, f.R * feature.origin + f.p, f.R * feature.x, f.R * feature.y};
   const CurveFromSurface curve = meeting_.seen_from(surface, placed, f.twist);
   const std::uint32_t count = run.end - run.begin;
+  const double* c = &meeting_.mover.sample_c[run.begin];
   Sight sight;
   OfRun ahead;  // m, estimate of how near at the end of the step; kNever: out of reach
   bool any = false;
   meeting_.measure_all(curve, run, [&](std::uint32_t i, const Measure& m) {
-    const double nearest = nearest_of(m, feature.half_width) - feature.radius;
+    const double nearest = nearest_of(m, feature.half_width, feature.growth) - feature.radius_at(c[i]);
     sight.distance[i] = m.distance;
     sight.change[i] = m.change;
     ahead[i] = nearest < f.margin ? nearest + m.change : kNever;
@@ -120,7 +121,8 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
     c.group = begin;
     c.sample = begin + static_cast<std::uint32_t>(next - ahead.begin());
     *next = kNever;
-    c.place = slide(curve, m.mover.sample_c[c.sample], m.mover.sample_s[c.sample], placed.feature->half_width);
+    c.place = slide(curve, m.mover.sample_c[c.sample], m.mover.sample_s[c.sample], placed.feature->half_width,
+                    placed.feature->growth);
     if (!measure_candidate(placed, face, count, c)) continue;
     if (c.gap_ahead < best.gap_ahead) best = c;
     if (c.gap_ahead < 0 && c.weight > firm.weight) firm = c;
@@ -141,7 +143,7 @@ bool Search::measure_candidate(const PlacedFeature& placed, std::uint32_t face, 
   ++cost_.slides;
   c.p = placed.point(c.place);
   c.at = meeting_.base.faces[face].surface->at(c.p);
-  c.gap = c.at.distance - placed.feature->radius;
+  c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
   if (c.gap >= f.margin || c.gap < -meeting_.base.options.spacing) return false;
   c.normal = c.at.normal;
   if (!admit(meeting_, placed, face, c) || c.gap >= f.margin) return false;
@@ -182,7 +184,8 @@ void Search::add_end(const PlacedFeature& placed, const Candidate& best, std::sp
 /// How much of a group's length touches: the overlap at its nearest place is used up where the group, sloping, comes
 /// out of the surface.
 double Search::touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) {
-  const double rise = std::abs(c.normal.dot(placed.tangent(c.place))) * 2 * placed.feature->half_width * count;
+  const double rise =
+      std::abs(c.normal.dot(placed.tangent(c.place)) - placed.feature->growth) * 2 * placed.feature->half_width * count;
   const double overlap = kTouching + std::max(0.0, -c.gap);
   return rise > overlap ? overlap / rise : 1;
 }
@@ -215,7 +218,7 @@ void Search::add(const PlacedFeature& placed, const Candidate& c, std::uint32_t 
   const double point = meeting_.mover.options.line_stiffness * meeting_.mover.options.point_length;
   const double stiffness = c.weight * (count * feature.stiffness + c.edge_share * point);
   const Vector3d normal = f.R_WB * c.normal;
-  const Vector3d place = f.R_WB * (c.p - feature.radius * c.normal) + f.p_WB;
+  const Vector3d place = f.R_WB * (c.p - feature.radius_at(c.place.c) * c.normal) + f.p_WB;
   const auto faces = static_cast<std::uint32_t>(meeting_.base.faces.size());
   const std::uint32_t source = (c.group * faces + face) << 1 | static_cast<std::uint32_t>(f.mover_is_second);
   rows_.add({f.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source});

@@ -1,4 +1,5 @@
-// A sample slides along its own segment to the place that is nearest to a surface. Private to this folder.
+// A sample slides along its own segment to the place where the ball that it carries is nearest to a surface. Private to
+// this folder.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,8 @@ inline Place place_at(bool is_arc, double c, double s, double t) {
 /// Newton's method on the distance, from the sample's middle, kept within the segment. Where the distance has a maximum
 /// instead of a minimum the lower end of the segment is taken. Most samples need one step: the distance is nearly a
 /// parabola over a segment.
-inline Place slide(const CurveFromSurface& curve, double c, double s, double half) {
+/// @param growth  of the radius of the ball that the curve carries
+inline Place slide(const CurveFromSurface& curve, double c, double s, double half, double growth = 0) {
   constexpr int kStepsMax = 5;
   constexpr double kGain = 1e-10;  // m: what another step would have to win
   Place at{0, c, s};
@@ -34,9 +36,10 @@ inline Place slide(const CurveFromSurface& curve, double c, double s, double hal
   with_measure(curve, [&](auto&& measure_at) {
     for (int i = 0; i < kStepsMax; ++i) {
       const Measure m = measure_at(at.c, at.s);
-      const double wanted = m.bend > 0 ? at.t - m.slope / m.bend : (m.slope > 0 ? -half : half);
+      const double slope = m.slope - growth;
+      const double wanted = m.bend > 0 ? at.t - slope / m.bend : (slope > 0 ? -half : half);
       const double t = std::clamp(wanted, -half, half);
-      if (std::abs((t - at.t) * m.slope) < kGain) return;
+      if (std::abs((t - at.t) * slope) < kGain) return;
       at = place_at(curve.is_arc, c, s, t);
     }
   });

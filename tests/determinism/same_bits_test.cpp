@@ -41,7 +41,7 @@ const std::map<std::string, Golden> kGolden = {
     {"pin_in_hole", {"b3a6adf4b0bef3af", 735}},        {"pin_in_hole_implicit", {"2b121702d4905d0d", 729}},
     {"pin_restored", {"fc0c97a6e19baecd", 737, 737}},  {"pin_restored_implicit", {"05e5c19d5b7062b5", 735, 735}},
     {"pin_blended", {"97ee5b6681eaae67", 1045, 1045}}, {"pin_exact", {"74bed87a27e40728", 283}},
-    {"cone_exact", {"945ee8b29fa47a72", 91}},          {"two_pins_exact", {"a349b198ea1724a2", 247}},
+    {"cone_exact", {"87d88add8d878a84", 91}},          {"two_pins_exact", {"a349b198ea1724a2", 247}},
     {"falling_boxes", {"a5814367306911d5", 440}},      {"falling_boxes_implicit", {"16960d205734924e", 440}},
 };
 
