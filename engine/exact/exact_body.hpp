@@ -9,7 +9,8 @@
 //
 // A curve is cut into segments no longer than the spacing. In the search a segment's sample slides along its own
 // segment to the nearest place (exact_link.hpp); a group of neighbouring segments makes one row, that of the nearest of
-// them: up to four, and on an arc those within half a radian, beyond which they push in different directions.
+// them: up to four, and on an arc those within half a radian, beyond which they push in different directions; where a
+// group lies flush its ends have rows of their own.
 //
 // Stiffness: an edge is a line of springs with `line_stiffness` per metre, a point counts as `point_length` of it. So
 // the sum over samples tends to an integral over the line as the spacing shrinks. The default is that of steel on steel
