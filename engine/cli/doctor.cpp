@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "engine/cli/commands.hpp"
+#include "engine/cli/realtime_priority.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/geometry/loader.hpp"
 
@@ -71,6 +72,7 @@ ordered_json examine() {
   uname(&system);
   j["kernel"] = std::string(system.sysname) + " " + system.release;
   j["simd"] = simd_targets();
+  j["realtime_priority"] = RealtimePriority(true).granted() ? "granted" : "refused: CAP_SYS_NICE, or `ulimit -r 1`";
   j["clock_step_ns"] = clock_step_ns();
   j["sleep_1ms_late_by_at_most_ns"] = sleep_lateness_ns();
   const std::string trouble = cad_trouble();

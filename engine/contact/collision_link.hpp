@@ -44,7 +44,7 @@ class CollisionLink {
   CollisionLink(const VoxelBody& first, const VoxelBody& second);
   /// From now on contacts are found by triangle against triangle, at most kMeshContactsMax.
   void find_by_triangles(const MeshTree& first, const MeshTree& second);
-  static constexpr std::size_t kMeshContactsMax = 65536;
+  static constexpr std::size_t kMeshContactsMax = 16384;
 
   /// Detection: fills the contact list. No allocation (but by FCL).
   void query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost);

@@ -31,10 +31,9 @@ struct ContactList {                 //  unit  meaning
   std::vector<std::uint32_t> point;  //  -     pointshell point of B
   std::vector<std::uint32_t> slot;   //  -     where A's voxel is stored: block * 512 + cell
   std::vector<float> x, y, z;        //  m     the point, body coordinates of A, relative to A's grid origin
-  std::vector<float> nx, ny,
-      nz;                    //  1     unit normal that pushes B (shorter once a hybrid method has taken a part of it)
-  std::vector<float> depth;  //  m     > 0
-  std::vector<float> fx, fy, fz;  //  N     force on B, body coordinates of A (see penalty.hpp)
+  std::vector<float> nx, ny, nz;     //  1     normal that pushes B: unit, or what a hybrid method left of it
+  std::vector<float> depth;          //  m     > 0
+  std::vector<float> fx, fy, fz;     //  N     force on B, body coordinates of A (see penalty.hpp)
   std::uint32_t size = 0;
   static constexpr std::size_t kPadding = 16;
   explicit ContactList(std::size_t capacity = 0);

@@ -12,9 +12,9 @@
 //     velocity says which that is;
 //   - where bodies lie flush most samples are near a face that decides nothing there, because the face across an edge
 //     does or because it looks the wrong way: these are told a run at a time and not tried one by one;
-//   - a group of segments has one row, at the place that will be nearest; where the group lies flush and is pressed on,
-//   so
-//     that its other end may be instead, that end has one too, and where the nearest place hardly holds, the firmest;
+//   - a group of segments has one row, at the place that will be nearest; where the group lies flush and is pressed
+//     on, so that its other end may be instead, that end has one too, and where the nearest place hardly holds, the
+//     firmest;
 //   - a place that cannot be the nearest because the faces there look the wrong way counts less and less, and not at
 //     all from 40 degrees on.
 // Every row appears with a gap of the margin or more and so without force, but for those of a group's ends.
@@ -22,8 +22,9 @@
 // Rows are straight where motion and surfaces are curved. What they let through within one step, and take back in the
 // next, is half of how far the place moves times how far the normal turns: (v dt)^2 / 2 rho for a place that slides
 // with v along a wall with radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r.
-// Where two rims of nearly the same radius cross, their crossing runs along them faster than either moves: light plates
-// that fall over a hole's rim at 0.1 to 2 m/s are let through by up to 7 um.
+// Where two rims of nearly the same radius cross, their crossing runs along them faster than either moves. For that
+// there is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up
+// to 7 um.
 #pragma once
 
 #include <memory>

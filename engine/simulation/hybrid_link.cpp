@@ -69,22 +69,22 @@ ContactColumns HybridLink::columns_of(const ContactList& contacts) {
   return columns;
 }
 
-RestoreResult HybridLink::restore_forces(ContactList& contacts, const Pose& X_AB) {
+RestoreResult HybridLink::restore(ContactList& contacts, const Pose& X_AB, std::vector<float>& x, std::vector<float>& y,
+                                  std::vector<float>& z) {
   constraints_.begin_frame(X_AB);
   ContactColumns columns = columns_of(contacts);
-  columns.fx = contacts.fx.data();
-  columns.fy = contacts.fy.data();
-  columns.fz = contacts.fz.data();
+  columns.fx = x.data();
+  columns.fy = y.data();
+  columns.fz = z.data();
   return constraints_.restore_contacts(columns);
 }
 
+RestoreResult HybridLink::restore_forces(ContactList& contacts, const Pose& X_AB) {
+  return restore(contacts, X_AB, contacts.fx, contacts.fy, contacts.fz);
+}
+
 RestoreResult HybridLink::restore_normals(ContactList& contacts, const Pose& X_AB) {
-  constraints_.begin_frame(X_AB);
-  ContactColumns columns = columns_of(contacts);
-  columns.fx = contacts.nx.data();
-  columns.fy = contacts.ny.data();
-  columns.fz = contacts.nz.data();
-  return constraints_.restore_contacts(columns);
+  return restore(contacts, X_AB, contacts.nx, contacts.ny, contacts.nz);
 }
 
 RestoreResult HybridLink::look_up(const ContactList& contacts, const Pose& X_AB) {

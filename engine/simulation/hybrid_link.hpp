@@ -46,6 +46,8 @@ class HybridLink {
 
  private:
   [[nodiscard]] ContactColumns columns_of(const ContactList& contacts);
+  RestoreResult restore(ContactList& contacts, const Pose& X_AB, std::vector<float>& x, std::vector<float>& y,
+                        std::vector<float>& z);
 
   Side map_, points_;
   ConstraintLink constraints_;
