@@ -1,7 +1,6 @@
 #include "engine/record/file_replace.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -56,6 +55,18 @@ void copy_by_reading(const std::string& path, int from, int to) {
   }
 }
 
+struct flock whole_file(int type) {
+  struct flock lock {};
+  lock.l_type = static_cast<short>(type);
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+bool marked_by_another(int descriptor) {
+  struct flock lock = whole_file(F_WRLCK);
+  return ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
 }  // namespace
 
 void refuse_write(const std::string& path, const std::string& cause) {
@@ -96,13 +107,33 @@ void Replacement::commit() {
   committed_ = true;
 }
 
-MarkedFile::MarkedFile(const std::string& path, Mark mark) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+MarkedFile::MarkedFile(const std::string& path, Mark mark)
+    : descriptor_(::open(path.c_str(), O_RDWR | O_CLOEXEC | (mark == Mark::writer ? O_CREAT : 0), kPermissions)) {
+  const bool read_only = descriptor_ < 0 && (errno == EACCES || errno == EROFS) && mark == Mark::recovery;
+  if (read_only) descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor_ < 0) return;
-  refused_ = ::flock(descriptor_, (mark == Mark::writer ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (read_only) {  // cannot be marked, only asked
+    refused_ = marked_by_another(descriptor_);
+    return;
+  }
+  struct flock lock = whole_file(F_WRLCK);
+  refused_ = ::fcntl(descriptor_, F_OFD_SETLK, &lock) != 0 && (errno == EAGAIN || errno == EACCES);
 }
 
 MarkedFile::~MarkedFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool MarkedFile::is_at(const std::string& path) const {
+  struct stat mine {};
+  struct stat named {};
+  return ::fstat(descriptor_, &mine) == 0 && ::stat(path.c_str(), &named) == 0 && mine.st_dev == named.st_dev &&
+         mine.st_ino == named.st_ino;
+}
+
+void MarkedFile::share() const {
+  struct flock lock = whole_file(F_RDLCK);
+  static_cast<void>(::fcntl(descriptor_, F_OFD_SETLK, &lock));
 }
 
 Reservation::Reservation(const std::string& path)
@@ -139,7 +170,8 @@ void Reservation::ensure(std::uint64_t bytes, std::uint64_t step) {
 }
 
 bool is_being_written(const std::string& path) {
-  return MarkedFile(path, MarkedFile::Mark::exclusive).refused();
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  return file.id >= 0 && marked_by_another(file.id);
 }
 
 }  // namespace verisim

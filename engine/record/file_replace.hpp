@@ -37,14 +37,14 @@ class Replacement {
   bool committed_ = false;
 };
 
-/// An open file (read only) and this process's mark on it. The system drops the mark when the process ends, however it
-/// ends. Marks of writers are shared locks, so that HDF5 readers, who ask for a shared one themselves, are not kept
-/// out.
+/// An open file and this process's mark on it, which the system drops when the process ends, however it ends. Marks are
+/// locks of the open file description: HDF5's own locks are of another kind and do not meet them, and a lock that is
+/// only its own comes down to a shared one in a single step.
 class MarkedFile {
  public:
-  enum class Mark { writer, exclusive };
-  /// Opens and marks it. `descriptor()` is -1 if there is no such file, `refused()` if somebody else's mark stands in
-  /// the way.
+  enum class Mark { writer, recovery };
+  /// Opens the file, for `writer` makes it if it is not there, and marks it so that nobody else can. `descriptor()` is
+  /// -1 if there is no such file, `refused()` if somebody else's mark stands in the way.
   MarkedFile(const std::string& path, Mark mark);
   ~MarkedFile();
   MarkedFile(const MarkedFile&) = delete;
@@ -52,6 +52,10 @@ class MarkedFile {
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
   [[nodiscard]] bool refused() const { return refused_; }
+  /// Is it still the file of that name? Its former owner may have renamed it before the mark was set.
+  [[nodiscard]] bool is_at(const std::string& path) const;
+  /// Lets readers lock the file as well, on file systems where all kinds of locks meet (NFS). Never fails.
+  void share() const;
 
  private:
   int descriptor_ = -1;

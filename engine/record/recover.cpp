@@ -91,7 +91,7 @@ std::optional<std::size_t> recover(const std::string& path) {
     static_cast<void>(RunFile(path));
     return std::nullopt;
   }
-  const MarkedFile original(path, MarkedFile::Mark::exclusive);
+  const MarkedFile original(path, MarkedFile::Mark::recovery);
   if (original.refused()) {
     fail(ErrorKind::input, "{}: a running process is still writing it; wait until that ends", path);
   }

@@ -81,16 +81,24 @@ bool is_live(const std::string& path) {
   }
 }
 
-// `path` itself, once it is known that a run may be written there.
-const std::string& writable(const std::string& path) {
+[[noreturn]] void refuse_second_run(const std::string& path) {
+  fail(ErrorKind::io, "{}: another run is writing it; choose another name or wait until that ends", path);
+}
+
+// The mark on PATH.part, which one run at a time can have. A run that has renamed its file is found by that name, and
+// is looked for once nobody can rename to it any more.
+std::unique_ptr<MarkedFile> claim(const std::string& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
     fail(ErrorKind::io, "{}: is a folder; name a file in it", path);
   }
-  if (is_live(path) || is_live(path + ".part")) {
-    fail(ErrorKind::io, "{}: another run is writing it; choose another name or wait until that ends", path);
+  const std::string part = path + ".part";
+  for (;;) {
+    auto mark = std::make_unique<MarkedFile>(part, MarkedFile::Mark::writer);
+    if (mark->descriptor() < 0) refuse_write(path, system_cause());
+    if (mark->refused()) refuse_second_run(path);
+    if (mark->is_at(part)) return mark;
   }
-  return path;
 }
 
 }  // namespace
@@ -125,13 +133,14 @@ void RunWriter::guard(Work work) {
 }
 
 RunWriter::RunWriter(const std::string& path, const Schema& schema, const RunHeader& header)
-    : path_(path), part_(writable(path), ".part"), schema_(schema) {
+    : path_(path), mark_(claim(path)), part_(path, ".part"), schema_(schema) {
+  if (is_live(path)) refuse_second_run(path);
   const hdf5::Session session;
   guard([&] {
     create(header);
     start_swmr();
     room_ = std::make_unique<Reservation>(part_.path());
-    mark_ = std::make_unique<MarkedFile>(part_.path(), MarkedFile::Mark::writer);  // HDF5 has dropped its own by now
+    mark_->share();
   });
 }
 

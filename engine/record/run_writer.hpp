@@ -60,6 +60,7 @@ class RunWriter {
     std::optional<std::size_t> due;  ///< offset in the row of the count that says whether the column gets one
   };
   std::string path_;
+  std::unique_ptr<MarkedFile> mark_;  ///< outlives part_: nobody else touches that name before it is gone
   Replacement part_;
   Schema schema_;
   std::size_t events_ = 0;
@@ -67,7 +68,6 @@ class RunWriter {
   hdf5::Handle file_;
   std::vector<Stored> columns_;
   hdf5::Handle event_type_, event_dataset_;
-  std::unique_ptr<MarkedFile> mark_;
   std::unique_ptr<Reservation> room_;
   std::vector<std::byte> packed_;  ///< the rows' values of one column
   bool failed_ = false;

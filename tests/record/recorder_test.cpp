@@ -3,8 +3,10 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <memory>
 #include <thread>
 
 #include "engine/base/error.hpp"
@@ -164,6 +166,54 @@ TEST(Recorder, RefusesAFileThatAnotherRunIsWriting) {
   EXPECT_EQ(error_of([&] { Recorder second(folder.file("run.h5"), schema(), header(), {}); }).kind(), ErrorKind::io);
   first.close({}, {});
   EXPECT_EQ(RunFile(folder.file("run.h5")).rows(), 60u);
+}
+
+// The file of a run gets its own name while it is written: there is no moment between the two names.
+TEST(Recorder, RefusesASecondRunAtEveryMomentOfTheFirst) {
+  const Folder folder;
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    const std::string path = folder.file("run_" + std::to_string(trial) + ".h5");
+    Recorder first(path, schema(), header(), {.paced = false, .frames_unflushed = 2});
+    std::atomic<bool> done{false};
+    std::thread loop([&] {
+      record(first, 0, 10);
+      done = true;
+    });
+    do {
+      EXPECT_EQ(error_of([&] { Recorder second(path, schema(), header(), {}); }).kind(), ErrorKind::io);
+    } while (!done);
+    loop.join();
+    first.close({}, {});
+    EXPECT_EQ(RunFile(path).rows(), 10u);
+  }
+}
+
+TEST(Recorder, GivesAFileToOneOfTwoRunsThatStartAtOnce) {
+  const Folder folder;
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    std::array<std::unique_ptr<Recorder>, 2> runs;
+    std::atomic<int> ready{0};
+    const auto start = [&](std::unique_ptr<Recorder>& run) {
+      ++ready;
+      while (ready < 2) std::this_thread::yield();
+      try {
+        run = std::make_unique<Recorder>(folder.file("run.h5"), schema(), header(), RecorderOptions{});
+      } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("another run"), std::string::npos) << e.what();
+      }
+    };
+    std::thread other([&] { start(runs[1]); });
+    start(runs[0]);
+    other.join();
+    ASSERT_NE(runs[0] == nullptr, runs[1] == nullptr);
+    Recorder& winner = *(runs[0] ? runs[0] : runs[1]);
+    record(winner, 0, 10);
+    winner.close({}, {});
+    EXPECT_EQ(RunFile(folder.file("run.h5")).rows(), 10u);
+    EXPECT_EQ(folder.files(), 1u);
+  }
 }
 
 /// No file of this process may grow beyond `bytes`, as on a full disk, until the end of the scope.
