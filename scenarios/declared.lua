@@ -9,6 +9,7 @@ local p = params{
   duration = 3,             -- s
 }
 local by_hand = p.by == "hand"
+if not by_hand and p.by ~= "solid" then error("by is '" .. p.by .. "'; it is one of hand, solid") end
 local hole, pin_radius, block_height, pin_height = 0.075, 0.07, 0.2, 0.4
 
 defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 0.1, hybrid = "restore", duration = p.duration }

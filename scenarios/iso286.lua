@@ -1,5 +1,6 @@
--- ISO 286-1 and 286-2: limits of size for holes H and the usual shafts, nominal sizes from 3 to 120 mm. Micrometres.
--- Source: ISO 286-1:2010, table 1 (standard tolerances) and tables 2 to 5 (fundamental deviations).
+-- ISO 286-1 and 286-2: limits of size for the usual holes and shafts, nominal sizes from 3 to 120 mm. Micrometres.
+-- Source: ISO 286-1:2010, table 1 (standard tolerances) and tables 2 to 5 (fundamental deviations). By its 4.3.2.5 the
+-- holes D to H mirror the shafts d to h, EI = -es; js and JS lie half to each side, -IT/2 to +IT/2.
 --   limits("H7/g6", 25) -> hole's lower and upper deviation, shaft's lower and upper deviation [m, on the diameter]
 local upper = {3, 6, 10, 18, 30, 50, 65, 80, 100, 120}  -- mm: a row ends with this nominal size
 
@@ -38,23 +39,32 @@ local function row_of(nominal)
   error(string.format("nominal is %g mm; this table has 3 to 120 mm", mm))
 end
 
+-- Lower and upper deviation of a hole or shaft such as H7, js6; nothing if this table does not have it.
+local function deviations(zone, row)
+  local letter, grade = zone:match("^(%a+)(%d+)$")
+  local it = grades[tonumber(grade)]
+  if not it then return end
+  if letter == "js" or letter == "JS" then return -it[row] / 2, it[row] / 2 end
+  if below[letter] then return below[letter][row] - it[row], below[letter][row] end
+  if above[letter] then
+    local low = letter == "k" and tonumber(grade) > 7 and 0 or above[letter][row]
+    return low, low + it[row]
+  end
+  local mirrored = letter == letter:upper() and below[letter:lower()]
+  if mirrored then return -mirrored[row], it[row] - mirrored[row] end
+end
+
 local function limits(fit, nominal)
-  local hole_grade, letter, shaft_grade = fit:match("^H(%d+)/(%l)(%d+)$")
-  local hole_it, shaft_it = grades[tonumber(hole_grade)], grades[tonumber(shaft_grade)]
-  if not hole_it or not shaft_it or not (below[letter] or above[letter]) then
-    error(string.format("fit is '%s'; this table has H5 to H11 with d e f g h k m n p r s, as in H7/g6", fit))
-  end
   local row = row_of(nominal)
-  local um = 1e-6
-  local shaft_low, shaft_high
-  if below[letter] then
-    shaft_high = below[letter][row]
-    shaft_low = shaft_high - shaft_it[row]
-  else
-    shaft_low = letter == "k" and tonumber(shaft_grade) > 7 and 0 or above[letter][row]
-    shaft_high = shaft_low + shaft_it[row]
+  local hole, shaft = fit:match("^(%u+%d+)/(%l+%d+)$")
+  local hole_low, hole_high = deviations(hole or "", row)
+  local shaft_low, shaft_high = deviations(shaft or "", row)
+  if not hole_low or not shaft_low then
+    error(string.format("fit is '%s'; this table has holes D E F G H JS and shafts d e f g h js k m n p r s, grades " ..
+                        "5 to 11, as in H7/g6", fit))
   end
-  return 0, hole_it[row] * um, shaft_low * um, shaft_high * um
+  local um = 1e-6
+  return hole_low * um, hole_high * um, shaft_low * um, shaft_high * um
 end
 
 return limits

@@ -8,7 +8,7 @@ local p = params{
   chamfer = mm(1),          -- m x 45 degrees, at the hole's mouth; 0: a sharp rim, which the hand feels its way along
   error = mm(0.7),          -- m, how far the pin's tip comes down beside the hole, in a direction drawn from the seed
   tilt = deg(1),            -- rad, how far the pin is tilted, likewise
-  tremor = mm(0.05),        -- m rms
+  tremor = mm(0.05),        -- m rms, 0.1 mm at most
   speed = 0.03,             -- m/s
   density = 7800,           -- kg/m^3
   hybrid = "exact",
@@ -19,7 +19,7 @@ local limits = require "iso286"
 local hole_low, hole_high, shaft_low, shaft_high = limits(p.fit, p.nominal)
 local share = ({loosest = 1, mid = 0.5, tightest = 0})[p.size]
 if not share then error("size is '" .. p.size .. "'; it is one of loosest, mid, tightest") end
-for word, most in pairs{chamfer = p.nominal / 2, error = p.nominal / 2, tilt = deg(20), tremor = p.nominal / 2} do
+for word, most in pairs{chamfer = p.nominal / 2, error = p.nominal / 2, tilt = deg(20), tremor = mm(0.1)} do
   if not (p[word] >= 0 and p[word] <= most) then
     error(string.format("%s is %g; for this nominal it lies between 0 and %g", word, p[word], most))
   end
@@ -36,7 +36,7 @@ local grip = 2
 if p.chamfer <= 0 then grip = math.max(grip, 1.4 * 4 * shaft / math.max(p.tilt, deg(0.5))) end
 
 defineSimulationParameters{
-  hybrid = p.hybrid, integrator = "implicit", duration = p.duration > 0 and p.duration or nil,
+  hybrid = p.hybrid, integrator = "implicit", duration = p.duration ~= 0 and p.duration or nil,
   maxStiffness = 2000, maxAngularStiffness = 2.5 * grip, maxCouplingForce = 35, maxCouplingTorque = 3,
 }
 

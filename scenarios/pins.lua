@@ -4,7 +4,7 @@
 local p = params{
   kind = "fitting",         -- "fitting"; "angled": the pins lean towards each other; "spaced": further apart than the
                             -- holes; "single": a plate with one pin, over the same block
-  lean = deg(15),           -- rad, of each pin, for "angled"
+  lean = deg(15),           -- rad, of each pin, for "angled"; below 0 they lean apart
   spread = mm(30),          -- m, by which the pins are further apart than the holes, for "spaced"
   clearance = mm(2),        -- m, on the radius
   voxelsize = mm(3),        -- m
@@ -17,6 +17,11 @@ local p = params{
 }
 
 local radius, length, apart, height = mm(25), mm(90), mm(120), mm(60)
+for word, range in pairs{lean = {-deg(45), deg(45)}, clearance = {0, radius / 2}} do
+  if not (p[word] >= range[1] and p[word] <= range[2]) then
+    error(string.format("%s is %g; it lies between %g and %g", word, p[word], range[1], range[2]))
+  end
+end
 defineSimulationParameters{
   maxStiffness = 300, maxAngularStiffness = 0.5, hybrid = p.hybrid, integrator = p.integrator, duration = p.duration,
   passiveContacts = p.passive,

@@ -15,6 +15,9 @@ defineSimulationParameters{
 }
 
 local height, radius = mm(60), mm(30)
+if not (p.clearance >= 0 and p.clearance <= radius / 2) then
+  error(string.format("clearance is %g; it lies between 0 and %g", p.clearance, radius / 2))
+end
 local kinds = {
   cone = {
     seat = Solid.box{mm(120), mm(120), height} - Solid.cone{radius1 = mm(15), radius2 = mm(35), height = height},

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
@@ -17,7 +18,7 @@ using nlohmann::ordered_json;
 
 struct InspectOptions {
   std::string model;
-  double voxel = 0;
+  std::optional<double> voxel;
   double scale = 0;
   double density = 1000;
   double deflection = 0;
@@ -167,8 +168,8 @@ void inspect(const InspectOptions& o) {
       std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), question.c_str());
       j["notes"].push_back(question);
     }
-    if (o.voxel != 0) {
-      const VoxelStatistics v = voxel_statistics(part, o.voxel);
+    if (o.voxel) {
+      const VoxelStatistics v = voxel_statistics(part, *o.voxel);
       j["surface_voxels"] = v.surface_voxels;
       j["feature_sets"] = v.feature_sets;
       j["memory_bytes"] = v.memory_bytes;

@@ -20,7 +20,8 @@ class Declaring {
   [[nodiscard]] std::size_t memory_bytes() const;
 
   /// Gives the surface voxel that holds p the set, in body.declared. Returns the set's number, 0 for an empty set.
-  /// Error(input) that names the body: no surface voxel there; what DeclaredFeatures::add refuses.
+  /// Error(input) that names the body: no surface voxel there; what DeclaredFeatures::add refuses; an entity that,
+  /// unbounded, is further from the voxel's centre than two of its diagonals: no shape fitted to the voxels is.
   /// @pre body is what this was made from
   FeatureSetId give(BodyDescription& body, const Vector3d& p, std::span<const DeclaredFeatures::Entity> set) const;
 

@@ -13,6 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whole from the root on, also for a file that is not there: weakly_canonical alone leaves that one's name bare.
+fs::path from_root(const fs::path& path) {
+  return fs::weakly_canonical(fs::current_path() / path);
+}
+
 bool is_below(const fs::path& path, const fs::path& folder) {
   const auto [at_folder, at_path] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   (void)at_path;
@@ -41,8 +46,8 @@ std::string options_key(const LoadOptions& o) {
 
 Inputs Inputs::live(const std::string& folder, std::vector<std::string> named) {
   Inputs inputs;
-  inputs.folder_ = fs::weakly_canonical(folder.empty() ? "." : folder).string();
-  for (const std::string& path : named) inputs.named_.push_back(fs::weakly_canonical(path).string());
+  inputs.folder_ = from_root(folder.empty() ? "." : folder).string();
+  for (const std::string& path : named) inputs.named_.push_back(from_root(path).string());
   return inputs;
 }
 
@@ -63,10 +68,10 @@ Inputs Inputs::stored(std::vector<InputFile> files, std::vector<StoredModel> mod
 
 std::string Inputs::resolve(const std::string& name) const {
   // A name from the command line is meant from where the user stands, as a shell completes it.
-  const fs::path from_here = fs::weakly_canonical(name);
+  const fs::path from_here = from_root(name);
   if (std::find(named_.begin(), named_.end(), from_here.string()) != named_.end()) return from_here.string();
   const fs::path given(name);
-  const fs::path path = fs::weakly_canonical(given.is_absolute() ? given : fs::path(folder_) / given);
+  const fs::path path = from_root(given.is_absolute() ? given : fs::path(folder_) / given);
   if (is_below(path, folder_)) return path.string();
   for (const std::string& folder : named_)
     if (is_below(path, folder)) return path.string();

@@ -52,11 +52,25 @@ void check(const std::string& owner, const Numbers& n) {
   }
 }
 
+/// What no bound on single numbers tells of a round face.
+void check_shape(const std::string& owner, const Surface& surface) {
+  if (const auto* cone = std::get_if<Cone>(&surface); cone != nullptr && cone->half_angle >= 0.5 * pinned::kPi) {
+    fail(ErrorKind::input, "'{}': a declared cone has a half angle of {} rad but it must be below pi/2, 90 degrees",
+         owner, cone->half_angle);
+  }
+  if (const auto* torus = std::get_if<Torus>(&surface); torus != nullptr && torus->minor_radius > torus->major_radius) {
+    fail(ErrorKind::input,
+         "'{}': a declared torus has a minor radius of {} m but it must not be above the major one, {} m", owner,
+         torus->minor_radius, torus->major_radius);
+  }
+}
+
 }  // namespace
 
 DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, const Entity& entity) {
   const Numbers n = numbers_of(entity);
   check(owner, n);
+  if (const auto* face = std::get_if<Face>(&entity)) check_shape(owner, face->surface);
   const bool is_edge = std::holds_alternative<Edge>(entity);
   const auto next = static_cast<Place>(is_edge ? 2 * edges_.size() + 1 : 2 * faces_.size());
   const Key key = {static_cast<double>(n.kind),

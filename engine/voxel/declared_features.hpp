@@ -27,7 +27,8 @@ class DeclaredFeatures {
   /// The number of the set of these entities: that of an equal set, or the next one. Entities are equal if all numbers
   /// of their surface or curve are.
   /// Throws Error(input) that names `owner` for an entity with a number that is not finite, a direction that is not of
-  /// unit length, or a radius that is not above zero, and for more sets than can be numbered.
+  /// unit length, a radius that is not above zero, a cone's half angle of pi/2 or more, or a torus that meets itself,
+  /// and for more sets than can be numbered.
   FeatureSetId add(const std::string& owner, std::span<const Entity> set);
 
   /// Gives a surface voxel the set: its number in [1, size()], or 0 to take a set away.

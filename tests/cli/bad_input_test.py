@@ -99,7 +99,7 @@ class BadParameters(ProgramTest):
             self.refuse_parameter(["'foo'", "blend, exact, off, restore"], name, "hybrid=foo")
 
     def test_fits_and_sizes_outside_the_table(self):
-        for fit in ("H7/zz9", "H7", "g6/H7", "H99/g6", "H7/g99"):
+        for fit in ("H7/zz9", "H7", "g6/H7", "H99/g6", "H7/g99", "C11/h6", "K7/h6", "H7/c11", "Js7/h6", "h7/g6"):
             self.refuse_parameter([f"fit is '{fit}'", "as in H7/g6"], "iso_fit", "fit=" + fit)
         for nominal in ("0", "-0.025", "0.0029", "0.1201"):
             self.refuse_parameter(["nominal is", "3 to 120 mm"], "iso_fit", "nominal=" + nominal)
@@ -108,10 +108,19 @@ class BadParameters(ProgramTest):
         self.refuse_parameter(["'huge'", "loosest, mid, tightest"], "iso_fit", "size=huge")
 
     def test_hands_and_leads_that_make_no_sense(self):
-        for setting in ("chamfer=-0.001", "chamfer=0.02", "error=0/0", "error=1", "tilt=2", "tremor=-1", "speed=0"):
+        for setting in ("chamfer=-0.001", "chamfer=0.02", "error=0/0", "error=1", "tilt=2", "tremor=-1",
+                        "tremor=mm(0.11)", "speed=0", "duration=-1"):
             self.refuse_parameter(setting.split("=")[0], "iso_fit", setting)
 
+    def test_clearances_and_leans_that_make_no_sense(self):
+        for name in ("seats", "pins"):
+            for clearance in ("-1", "-0.0001", "0.02"):
+                self.refuse_parameter([f"clearance is {clearance}", "between 0 and"], name, "clearance=" + clearance)
+        for lean in ("-3", "3"):
+            self.refuse_parameter([f"lean is {lean}", "between -0.785"], "pins", "lean=" + lean)
+
     def test_kinds_that_do_not_exist(self):
+        self.refuse_parameter(["'feet'", "hand, solid"], "declared", "by=feet")
         self.refuse_parameter(["'wedge'", "cone, ball, socket"], "seats", "kind=wedge")
         self.refuse_parameter(["'bent'", "fitting, angled, spaced, single"], "pins", "kind=bent")
 
@@ -127,6 +136,16 @@ class BadModels(ProgramTest):
             self.refuse_model("", name, garbage)
         self.refuse_model("", "half.stl", b"\0" * 80 + struct.pack("<I", 1000) + b"\0" * 100)
         self.refuse_model("", "half.step", b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('x'),'2;1');\n")
+
+    def test_a_file_that_is_not_there_says_in_which_folder(self):
+        for name in ("nope.step", "./nope.step", "inner/nope.step"):
+            folder = os.path.realpath(os.path.dirname(os.path.join(self.folder, name)))
+            self.refuse(3, f"{name}: there is no such file in {folder}; check", "inspect", name)
+
+    def test_voxels_of_no_size(self):
+        name = self.write("box.stl", self.box_stl(0.1))
+        for size in ("0", "-0", "-1", "nan", "inf"):
+            self.refuse(3, "voxelsize is", "inspect", name, "--voxel", size)
 
     def test_unknown_formats(self):
         self.refuse_model("", "a.docx", b"x")

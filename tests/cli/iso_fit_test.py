@@ -1,5 +1,6 @@
 """Fits of ISO 286 in the driven scene: what has clearance goes together in every trial, what has interference in none.
 VERISIM_SEEDS=200 is the long form; each trial is one seed of one nominal size, fit and size within the tolerances."""
+import functools
 import math
 import os
 import unittest
@@ -12,7 +13,7 @@ from program import ProgramTest, SOURCE
 SEEDS = int(os.environ.get("VERISIM_SEEDS", "1"))
 NOMINALS = [10, 25, 75, 120]  # mm
 SPEED = 0.03    # m/s, the hand's
-PUSH = 15       # N, its spring's 400 N/m with a lead of 25 mm, and half as much again of its damper
+TREMBLE = 2 * math.pi * 10 * 5e-5  # m/s, of the hand's tremor: 0.05 mm rms about 10 Hz
 STEP = 0.001    # s
 
 
@@ -27,14 +28,20 @@ class IsoFit(ProgramTest):
         return summary["outcome"] == "inserted"
 
     def assert_forces_are_continuous(self, run_file, nominal, what):
-        """From frame to frame a force changes by no more than stops the pin at the hand's speed, and what the hand
-        pushes."""
+        """What changes from frame to frame is what the hand presses, for contact may begin or end with all of it, and
+        what stops the pin in either of the two frames, whose forces may come from opposite walls. What there is to stop
+        is the speed that the pin came with, the hand's at most, and its tremor's at least."""
         d = nominal * 1e-3
         mass = 7800 * math.pi / 4 * d * d * 2 * d
         with h5py.File(run_file) as f:
-            force = f["state/link/block~pin/wrench"][:, :3]
-        steps = numpy.linalg.norm(numpy.diff(force, axis=0), axis=1)
-        self.assertLessEqual(steps.max(), mass * SPEED / STEP + PUSH, what)
+            force, press = (f[f"state/{name}/wrench"][:, :3] for name in ("link/block~pin", "device/hand"))
+            velocity = f["state/body/pin/twist"][:, :3]
+        norm = functools.partial(numpy.linalg.norm, axis=1)
+        steps, press = norm(numpy.diff(force, axis=0)), norm(press)
+        speed = numpy.clip(numpy.concatenate([[0], norm(velocity[:-1])]), TREMBLE, SPEED)  # before the frame
+        bound = mass * (speed[:-1] + speed[1:]) / STEP + numpy.maximum(press[:-1], press[1:])
+        worst = (steps - bound).argmax()
+        self.assertLessEqual(steps[worst], bound[worst], f"{what}, frame {worst + 1}")
 
     def trials(self, fits, sizes):
         return [(seed, nominal, fit, size) for nominal in NOMINALS for fit in fits for size in sizes
@@ -44,7 +51,10 @@ class IsoFit(ProgramTest):
         """Largest and least clearance [um, on the diameter] as tables of fits print them; less than 0: interference."""
         for nominal, fit, largest, least in [(3, "H7/g6", 18, 2), (10, "H7/p6", 0, -24), (18, "H8/f7", 61, 16),
                                              (25, "H7/g6", 41, 7), (50, "H7/h6", 41, 0), (50, "H8/k8", 39, -39),
-                                             (65, "H7/r6", -11, -60), (75, "H8/f7", 106, 30), (100, "H7/n6", 12, -45), (120, "H7/s6", -44, -101)]:
+                                             (65, "H7/r6", -11, -60), (75, "H8/f7", 106, 30), (100, "H7/n6", 12, -45),
+                                             (120, "H7/s6", -44, -101), (25, "G7/h6", 41, 7), (25, "F8/h7", 74, 20),
+                                             (40, "E9/h8", 151, 50), (80, "D10/h9", 294, 100), (100, "G7/js6", 58, 1),
+                                             (25, "H7/js6", 27.5, -6.5), (25, "JS7/h6", 23.5, -10.5)]:
             for size, want in (("loosest", largest), ("tightest", least), ("mid", 0.5 * (largest + least))):
                 pairs = {"nominal": f"mm({nominal})", "fit": fit, "size": size, "duration": 0.03}
                 options = [word for key, value in pairs.items() for word in ("--set", f"{key}={value}")]

@@ -30,7 +30,7 @@ TEST(AddFeatureSet, GivesAVoxelTheSetAndNumbersSetsFromOne) {
     local top = Plane()
     top.point, top.normal = {0, 0, 0.02}, osg.Vec3(0, 0, 3)
     local bore = Cylinder()
-    bore.center, bore.normal, bore.radius = {0, 0, 0}, {0, 0, 1}, 0.01
+    bore.center, bore.normal, bore.radius = {0, 0, 0}, {0, 0, 1}, 0.02
     local one, two = FeatureSet(), FeatureSet()
     one:insert(BoundaryFeature(top))
     two:insert(BoundaryFeature(top))
@@ -53,7 +53,7 @@ TEST(AddFeatureSet, GivesAVoxelTheSetAndNumbersSetsFromOne) {
       EXPECT_EQ(plane->normal, Vector3d(0, 0, 1));
     }
     if (const auto* cylinder = std::get_if<Cylinder>(&face.surface)) {
-      EXPECT_EQ(cylinder->radius, 0.01);
+      EXPECT_EQ(cylinder->radius, 0.02);
     }
   }
 }
@@ -78,15 +78,17 @@ TEST(Shapes, HaveTheFieldsOfTheirKind) {
 TEST(BoundaryFeature, TakesAShapeAsItIsThen) {
   WrittenScenario written(std::string(kCube) + R"(
     local c = Circle()
-    c.radius = 0.01
-    local feature = BoundaryFeature(c)
     c.radius = 0.02
+    local feature = BoundaryFeature(c)
+    c.radius = 0.03
     local set = FeatureSet()
     set:insert(feature)
-    cube:foreachSurfaceVoxel(function(x, y, z) cube:addFeatureSet(set, osg.Vec3(x, y, z)) end))");
+    cube:foreachSurfaceVoxel(function(x, y, z)
+      if math.abs(z) < 0.005 then cube:addFeatureSet(set, osg.Vec3(x, y, z)) end
+    end))");
   const DeclaredFeatures& declared = *written.build().bodies[0].declared;
   ASSERT_EQ(declared.edges().size(), 1U);
-  EXPECT_EQ(std::get<Circle>(declared.edges()[0].curve).radius, 0.01);
+  EXPECT_EQ(std::get<Circle>(declared.edges()[0].curve).radius, 0.02);
 }
 
 TEST(BrepWords, LeaveTheDrawnBallToDrawing) {
@@ -112,6 +114,43 @@ TEST(BrepWords, RefuseWhatIsWrongWithPlaceAndRemedy) {
     set:insert(Cylinder())
     cube:foreachSurfaceVoxel(function(x, y, z) cube:addFeatureSet(set, x, y, z) end))");
   EXPECT_NE(no_radius.find("'cube': a declared entity has a radius or angle of 0"), std::string::npos) << no_radius;
+}
+
+/// The refusal of a shape that is given to the voxels of the cube's top, whose centres lie in z = top.
+std::string given_to_the_top(const std::string& shape) {
+  return refusal_of(std::string(kCube) + shape + R"(
+    local set = FeatureSet()
+    set:insert(shape)
+    cube:foreachSurfaceVoxel(function(x, y, z)
+      if z > 0.016 then cube:addFeatureSet(set, x, y, z) end
+    end))");
+}
+
+TEST(BrepWords, RefuseConesAndToriThatAreNone) {
+  const std::string cone = "local shape = Cone()\nshape.center, shape.radius, shape.halfAngle = {0, 0, 0.02}, 0.02, ";
+  EXPECT_NE(given_to_the_top(cone + "2").find("'cube': a declared cone has a half angle of 2 rad"), std::string::npos);
+  EXPECT_NE(given_to_the_top(cone + "math.pi / 2").find("must be below pi/2"), std::string::npos);
+  EXPECT_EQ(given_to_the_top(cone + "1.5"), "");
+  const std::string torus = "local shape = Torus()\nshape.center, shape.majorRadius, shape.minorRadius = {0, 0, 0}, ";
+  EXPECT_NE(given_to_the_top(torus + "0.02, 0.0201").find("'cube': a declared torus has a minor radius of 0.0201 m"),
+            std::string::npos);
+  EXPECT_EQ(given_to_the_top(torus + "0.02, 0.02"), "");
+}
+
+TEST(BrepWords, RefuseAShapeThatPassesNowhereNearTheVoxel) {
+  const std::string far = given_to_the_top("local shape = Plane()\nshape.point = {0, 0, 7}");
+  EXPECT_NE(far.find("'cube': the plane declared for the voxel at ("), std::string::npos) << far;
+  EXPECT_NE(far.find(" mm away from it, 17.3 mm at most are taken"), std::string::npos) << far;
+  for (const char* shape :
+       {"Cylinder()\nshape.radius = 20", "Sphere()\nshape.radius = 20", "Circle()\nshape.radius = 20",
+        "Line()\nshape.point, shape.direction = {0, 7, 0}, {1, 0, 0}"})
+    EXPECT_NE(given_to_the_top("local shape = " + std::string(shape)).find(" mm away from it"), std::string::npos)
+        << shape;
+}
+
+TEST(BrepWords, TakeAShapeThatIsTwoVoxelsOff) {
+  for (const char* height : {"0.010", "0.030"})
+    EXPECT_EQ(given_to_the_top("local shape = Plane()\nshape.point = {0, 0, " + std::string(height) + "}"), "");
 }
 
 TEST(BrepWords, AreForTheTimeInWhichTheSceneIsBuilt) {
