@@ -29,8 +29,9 @@ class IsoFit(ProgramTest):
 
     def assert_forces_are_continuous(self, run_file, nominal, what):
         """What changes from frame to frame is what the hand presses, for contact may begin or end with all of it, and
-        what stops the pin in either of the two frames, whose forces may come from opposite walls. What there is to stop
-        is the speed that the pin came with, the hand's at most, and its tremor's at least."""
+        what stops the pin in the two frames, whose forces may come from opposite walls: the speeds that it came with.
+        Together these are the hand's speed at most, for what was stopped is not as fast again in the next frame, and
+        its tremor's, to and fro, at least."""
         d = nominal * 1e-3
         mass = 7800 * math.pi / 4 * d * d * 2 * d
         with h5py.File(run_file) as f:
@@ -38,8 +39,9 @@ class IsoFit(ProgramTest):
             velocity = f["state/body/pin/twist"][:, :3]
         norm = functools.partial(numpy.linalg.norm, axis=1)
         steps, press = norm(numpy.diff(force, axis=0)), norm(press)
-        speed = numpy.clip(numpy.concatenate([[0], norm(velocity[:-1])]), TREMBLE, SPEED)  # before the frame
-        bound = mass * (speed[:-1] + speed[1:]) / STEP + numpy.maximum(press[:-1], press[1:])
+        before = numpy.concatenate([[0], norm(velocity[:-1])])
+        stopped = numpy.clip(before[:-1] + before[1:], 2 * TREMBLE, SPEED)
+        bound = mass * stopped / STEP + numpy.maximum(press[:-1], press[1:])
         worst = (steps - bound).argmax()
         self.assertLessEqual(steps[worst], bound[worst], f"{what}, frame {worst + 1}")
 
