@@ -47,6 +47,14 @@ struct QueryCost {
   std::uint64_t candidates = 0;  ///< points found in a voxel of layer <= 0
 };
 
+/// Bytes of bodies and contacts that a query's work goes through: a cluster's record; of a point its place and the
+/// block and layer of its voxel; of a candidate its normal and what a contact holds.
+[[nodiscard]] constexpr std::uint64_t bytes_touched(const QueryCost& cost) {
+  constexpr std::uint64_t kPoint = 3 * sizeof(float) + sizeof(std::uint32_t) + sizeof(Layer);
+  constexpr std::uint64_t kCandidate = 3 * sizeof(float) + 2 * sizeof(std::uint32_t) + 7 * sizeof(float);
+  return cost.clusters * sizeof(Pointshell::Cluster) + cost.points * kPoint + cost.candidates * kCandidate;
+}
+
 /// Fills `contacts` (in ascending point order) and adds to `cost`. X_AB places B in A. No allocation, no lock.
 /// A pose that is not finite touches nothing. Cost: about 10 ns per cluster and 1 ns per point of those not culled.
 /// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order

@@ -75,41 +75,66 @@ StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion
   return work;
 }
 
-/// The share of the contact `f` that may act: 1, without a rounding, or that at which its work a s^2 + b s meets the
-/// budget. `velocities`: u0 + u_free.
-double share_within(double budget, const Vector6d& f, const Vector6d& velocities, const Vector6d& du, double dt) {
-  const double a = 0.5 * dt * f.dot(du);
-  const double b = 0.5 * dt * f.dot(velocities);
-  if (!(a + b > budget)) return 1;
+}  // namespace
+
+ContactWork& ContactWork::operator+=(const ContactWork& other) {
+  all += other.all;
+  quadratic += other.quadratic;
+  linear += other.linear;
+  return *this;
+}
+
+double ContactWork::of(double share) const {
+  return share == 1 ? all : (quadratic * share + linear) * share;
+}
+
+double share_within(double budget, const ContactWork& work) {
+  if (!(work.all > budget)) return 1;
+  const double a = work.quadratic;
+  const double b = work.linear;
   if (!(a > 0)) return 0;
   return std::clamp((std::sqrt(b * b + 4 * a * budget) - b) / (2 * a), 0.0, 1.0);
 }
 
+namespace {
+
+/// What a wrench adds to the velocity within the step.
+Vector6d sped_up(const RigidBody& body, const Matrix3d& inertia_inverse, const Wrench& w, double dt) {
+  return stacked(dt / body.mass * w.force, dt * (inertia_inverse * w.torque));
+}
+
+Wrench damper_of(const Loads& loads) {
+  if (loads.coupling == nullptr) return {};
+  return damper_and_clutch(*loads.coupling, loads.coupling_at_start.spring, loads.coupling_at_start.damper);
+}
+
 }  // namespace
+
+ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads, double dt) {
+  Wrench others = loads.external;
+  if (loads.coupling != nullptr) others += loads.coupling_at_start.spring;
+  others += damper_of(loads);
+  const Matrix3d inertia_inverse = body.inertia_inverse_W();
+  const Vector6d before_and_free = 2 * stacked(body.v_C, body.omega) + sped_up(body, inertia_inverse, others, dt);
+  const Vector6d f = stacked(loads.contact);
+  const double quadratic = 0.5 * dt * f.dot(sped_up(body, inertia_inverse, loads.contact, dt));
+  const double linear = 0.5 * dt * f.dot(before_and_free);
+  return {quadratic + linear, quadratic, linear};
+}
 
 StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
   const double energy_before = potential_at_start(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
-  const Wrench damper =
-      loads.coupling == nullptr ? Wrench{} : damper_and_clutch(*loads.coupling, spring, loads.coupling_at_start.damper);
-  const Matrix3d inertia_inverse = body.inertia_inverse_W();
-  const auto sped_up = [&](const Wrench& w) {
-    return stacked(dt / body.mass * w.force, dt * (inertia_inverse * w.torque));
-  };
-  const Vector6d u0 = stacked(body.v_C, body.omega);
-  Wrench contact = loads.contact;
-  if (std::isfinite(loads.contact_budget)) {
-    Wrench others = loads.external;
-    others += spring;
-    others += damper;
-    const double share =
-        share_within(loads.contact_budget, stacked(contact), 2 * u0 + sped_up(others), sped_up(contact), dt);
-    contact = {share * contact.force, share * contact.torque};
-  }
+  const Wrench damper = damper_of(loads);
+  const double share = loads.contact_share;
+  const Wrench contact{share * loads.contact.force, share * loads.contact.torque};
   const Vector3d force = loads.external.force + contact.force + spring.force + damper.force;
   const Vector3d torque = loads.external.torque + contact.torque + spring.torque + damper.torque;
-  const Motion motion = advance(body, u0 + sped_up({force, torque}), dt);
-  return account(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
+  const Vector6d u1 = stacked(body.v_C, body.omega) + sped_up(body, body.inertia_inverse_W(), {force, torque}, dt);
+  const Motion motion = advance(body, u1, dt);
+  StepWork work = account(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
+  work.contact_end.share = share;
+  return work;
 }
 
 namespace {
@@ -185,26 +210,57 @@ StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& s
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Wrench contact = solved;
   if (step.with_contact) contact += wrench_of(contact_at_end(body, loads, u1, dt));
+  const ContactEnd end{step.with_contact ? 1.0 : 0.0, u0, u1};
   const Wrench spring = wrench_of(step.spring - dt * (step.K * u1));
   const Wrench damper = wrench_of(step.damper + step.D * (u0 - u1));
   const Motion motion = advance(body, u1, dt);
-  return account(body, loads, motion, spring, damper, contact, energy_before, dt, 0);
+  StepWork work = account(body, loads, motion, spring, damper, contact, energy_before, dt, 0);
+  work.contact_end = end;
+  return work;
+}
+
+namespace {
+
+/// An implicit step and the same without contact, which by the end of the step has become the constant `contact`: all
+/// of that gives `with_all` again, none of it free.free.
+struct DividedStep {
+  Vector6d with_all, contact;
+  ImplicitStep free;
+};
+
+DividedStep divide(const RigidBody& body, const Loads& loads, const ImplicitStep& step, double dt) {
+  DividedStep divided{step.free, contact_at_end(body, loads, step.free, dt), step};
+  assemble(body, loads, dt, false, divided.free);
+  return divided;
+}
+
+}  // namespace
+
+ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, double dt) {
+  const ImplicitStep step = begin_implicit(body, loads, dt);
+  if (!step.with_contact) return {};
+  const DividedStep divided = divide(body, loads, step, dt);
+  const Vector6d u0 = stacked(body.v_C, body.omega);
+  const auto work_along = [&](const Vector6d& velocities) { return 0.5 * dt * divided.contact.dot(velocities); };
+  return {work_along(u0 + divided.with_all), work_along(divided.with_all - divided.free.free),
+          work_along(u0 + divided.free.free)};
 }
 
 StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
-  ImplicitStep step = begin_implicit(body, loads, dt);
-  if (!step.with_contact || !std::isfinite(loads.contact_budget))
-    return end_implicit(body, loads, step, step.free, {}, dt);
-  const Vector6d u0 = stacked(body.v_C, body.omega);
-  const Vector6d contact = contact_at_end(body, loads, step.free, dt);
-  const Vector6d with_all = step.free;
-  if (!(0.5 * dt * contact.dot(u0 + with_all) > loads.contact_budget))
-    return end_implicit(body, loads, step, with_all, {}, dt);
-  // What contact has become by the end of the step, as a constant: all of it gives with_all again, none step.free.
-  assemble(body, loads, dt, false, step);
-  const Vector6d du = with_all - step.free;
-  const double share = share_within(loads.contact_budget, contact, u0 + step.free, du, dt);
-  return end_implicit(body, loads, step, step.free + share * du, wrench_of(share * contact), dt);
+  const ImplicitStep step = begin_implicit(body, loads, dt);
+  const double share = loads.contact_share;
+  if (!step.with_contact || share == 1) return end_implicit(body, loads, step, step.free, {}, dt);
+  const DividedStep divided = divide(body, loads, step, dt);
+  const ContactEnd end{share, stacked(body.v_C, body.omega), divided.with_all};
+  const Vector6d u1 = divided.free.free + share * (divided.with_all - divided.free.free);
+  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(share * divided.contact), dt);
+  work.contact_end = end;
+  return work;
+}
+
+Wrench acted(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift, const ContactEnd& end,
+             double dt) {
+  return wrench_of(end.share * (stacked(start) + dt * (drift - K * end.u1) - D * (end.u1 - end.u0)));
 }
 
 }  // namespace verisim

@@ -15,17 +15,16 @@
 // and u along it: f0.(u0 + u1)/2 dt = [U + dt/2 f.u] before - after, where u1 - u0 = dt M^-1 f0. shadow_energy is that
 // second term (of the modified, or shadow, Hamiltonian): what it lends at one moment it takes back at the next.
 //
-// Contact that must not give more energy than it was given (Loads::contact_budget): a passivity controller as
-// Hannaford's and Ryu's, but one that knows the step's work before it is done and not a step later. The work of a
-// contact of which the share s acts is w(s) = s dt f.(u0 + u_free + s du)/2, u_free the new velocity without it, du
-// what all of it adds. If w(1) exceeds the budget, the s at which w(s) meets it acts. It never pulls, nor weakens what
-// resists a motion.
+// Contacts that must not give more energy than they were given: a passivity controller as Hannaford's and Ryu's, but
+// one that knows the step's work before it is done and not a step later. The work of a contact of which the share s
+// acts is w(s) = s dt f.(u0 + u_free + s du)/2, u_free the new velocity without it, du what all of it adds
+// (ContactWork). Where bodies that move touch each other, the sum over them is what counts, and one share is for all:
+// what is taken from one side of a contact is taken from the other, and momentum stays. If w(1) exceeds the budget, the
+// s at which w(s) meets it acts. It never pulls, nor weakens what resists a motion.
 //
 // Rotation keeps angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then omega = I1^-1 L1.
 // Spin energy stays below |L|^2 / (2 I_min) whatever the speed: a fast needle cannot blow up.
 #pragma once
-
-#include <limits>
 
 #include "engine/base/pose.hpp"
 #include "engine/dynamics/body.hpp"
@@ -40,11 +39,20 @@ struct Loads {
   Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
   Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
   Vector6d contact_drift = Vector6d::Zero();  ///< sum of K times the twist of the other body at C: a wall that moves
-  double contact_budget = std::numeric_limits<double>::infinity();  ///< J, >= 0: work that contact may do on the body
-  const Coupling* coupling = nullptr;                               ///< null: not held
+  double contact_share = 1;                   ///< 0 to 1: so much of contact acts (share_within)
+  const Coupling* coupling = nullptr;         ///< null: not held
   CouplingForce coupling_at_start;
   CouplingTarget target;
 };
+
+/// By which rule the contact of a step's loads became what acted. Every part of that contact, wrench w0 with stiffness
+/// K, damping D and drift, became share (w0 + dt (drift - K u1) - D (u1 - u0)).
+struct ContactEnd {
+  double share = 1;  ///< 0: it let go
+  Vector6d u0 = Vector6d::Zero(), u1 = Vector6d::Zero();
+};
+[[nodiscard]] Wrench acted(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift,
+                           const ContactEnd& end, double dt);
 
 /// What the loads did during the step [J, and the wrenches that were really applied].
 struct StepWork {
@@ -55,10 +63,24 @@ struct StepWork {
   double damper = 0;        ///< dissipated in the coupling's damper and clutch, relative to the target's motion
   double input = 0;         ///< put in by the hand through these two; through the spring: see Ledger::add_jump
   double numerical = 0;     ///< lost (or gained, < 0) by the discretization itself: see ledger.hpp
+  ContactEnd contact_end;
 };
 
 [[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
 [[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
+
+/// Work [J] on a body of a contact of which the share s acts: w(s) = quadratic s^2 + linear s, and w(1), whose rounding
+/// is that of the step itself.
+struct ContactWork {
+  double all = 0, quadratic = 0, linear = 0;
+  ContactWork& operator+=(const ContactWork& other);
+  [[nodiscard]] double of(double share) const;
+};
+/// Of the step that these loads would make.
+[[nodiscard]] ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads, double dt);
+[[nodiscard]] ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, double dt);
+/// The share that may act: 1, without a rounding, or that at which the work meets the budget [J, >= 0].
+[[nodiscard]] double share_within(double budget, const ContactWork& work);
 
 /// [J] of a potential whose force on the body is `force`, while steps of step_semi_implicit advance it (see above).
 [[nodiscard]] inline double shadow_energy(const Wrench& force, const RigidBody& body, double dt) {

@@ -53,7 +53,8 @@ void Simulation::Implementation::make_schema() {
     const std::string path = "/state/body/" + body.name;
     add(path + "/pose", Dtype::f64, 7, "m, 1", "world pose of the body coordinates: position, quaternion x y z w");
     add(path + "/twist", Dtype::f64, 6, "m/s, rad/s", "velocity of the centre of mass, angular velocity; world");
-    add(path + "/force", Dtype::f64, 6, "N, N m", "contact wrench on the body about its centre of mass; world");
+    add(path + "/force", Dtype::f64, 6, "N, N m",
+        "contact wrench on the body as applied, about its centre of mass; world");
   }
   for (const auto& device : devices) {
     const std::string path = "/state/device/" + device->name();
@@ -67,11 +68,12 @@ void Simulation::Implementation::make_schema() {
         "colliding voxel pairs; places of precise contact where the method is exact");
     add(path + "/cache_hits", Dtype::u32, 1, "1", "constraint look-ups that were memoized");
     add(path + "/cache_misses", Dtype::u32, 1, "1", "constraint look-ups that had to be recognized");
-    schema.add({path + "/constraint", Dtype::u8, 1, "1", "strongest recognized constraint", 0, kConstraintNames});
+    schema.add({path + "/constraint", Dtype::u8, 1, "1",
+                "strongest recognized constraint; none where the method is exact or off", 0, kConstraintNames});
     add(path + "/alignment", Dtype::f64, 1, "1", "alignment alpha of that constraint");
     add(path + "/max_penetration", Dtype::f64, 1, "m", "deepest contact");
     add(path + "/wrench", Dtype::f64, 6, "N, N m",
-        "on the second body by the first, about the second's centre of mass; world");
+        "on the second body by the first as applied, about the second's centre of mass; world");
   }
   for (const auto& head : heads) {
     const std::string path = "/state/wii/" + head->name();
@@ -101,6 +103,7 @@ void Simulation::Implementation::make_schema() {
   add("/cost/recognitions", Dtype::u32, 1, "1", "pairs of entities that recognition looked at");
   add("/cost/exact_samples", Dtype::u32, 1, "1", "samples of precise edges tried against precise faces");
   add("/cost/solver_steps", Dtype::u32, 1, "1", "Newton iterations of the exact response");
+  add("/cost/bytes_touched", Dtype::u32, 1, "B", "of voxels, points and contacts, by the queries");
   for (const auto& head : heads) add(reports_of(*head), Dtype::u32, 1, "1", "reports tracked");
   row.assign(schema.row_bytes(), std::byte{0});
 }
@@ -143,7 +146,7 @@ void Simulation::Implementation::fill_row() {
   out.put(hash);
   for (const std::uint64_t count :
        {cost.pairs_tested, cost.clusters, cost.points_tested, cost.voxels_read, cost.contacts, cost.lookups,
-        cost.recognitions, cost.exact_samples, cost.solver_steps})
+        cost.recognitions, cost.exact_samples, cost.solver_steps, cost.bytes_touched})
     out.put(static_cast<std::uint32_t>(count));
   for (const auto& head : heads) out.put(std::uint32_t{head->taken()});
   VERISIM_ASSERT(out.at() == row.data() + row.size());

@@ -222,8 +222,7 @@ void Simulation::Implementation::solve_island(std::size_t island) {
 
 /// What the rows of one link do to its bodies; rows are numbered as they were added.
 void Simulation::Implementation::share_out(Link& link, std::size_t first_row) {
-  Body& first = bodies[link.first];
-  Body& second = bodies[link.second];
+  const Body& second = bodies[link.second];
   Wrench on_second;
   std::uint32_t acting = 0;
   const auto& rows = link.exact->rows().rows();
@@ -236,9 +235,6 @@ void Simulation::Implementation::share_out(Link& link, std::size_t first_row) {
   }
   link.on_second += on_second;
   count_contacts(link, acting);
-  const Vector3d arm = second.rigid.p_WC - first.rigid.p_WC;
-  if (!first.solved) first.exact_wrench += {-on_second.force, -(on_second.torque + arm.cross(on_second.force))};
-  if (!second.solved) second.exact_wrench += on_second;
 }
 
 }  // namespace verisim

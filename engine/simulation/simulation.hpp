@@ -31,6 +31,7 @@ struct FrameCost {
   std::uint64_t recognitions = 0;
   std::uint64_t exact_samples = 0;  ///< samples of precise edges that were tried against precise faces
   std::uint64_t solver_steps = 0;   ///< Newton iterations of the exact response
+  std::uint64_t bytes_touched = 0;  ///< by the voxels' queries (contact/query.hpp)
 };
 
 /// The stages of a frame, as /timing/stage_ns counts them.
@@ -98,7 +99,7 @@ class Simulation {
     std::uint64_t cache_hits = 0, cache_misses = 0;
     std::uint64_t null_misses = 0;  ///< of the misses: recognized, and there was no constraint
     std::array<std::uint64_t, kConstraintKindNames.size()>
-        constraint_frames{};  ///< frames in which a link had this kind
+        constraint_frames{};  ///< frames in which any link had this kind
   };
   [[nodiscard]] const Totals& totals() const;
 

@@ -113,6 +113,7 @@ void Simulation::Implementation::query_contacts() {
     cost.clusters += work.clusters;
     cost.points_tested += work.points;
     cost.voxels_read += work.points;
+    cost.bytes_touched += bytes_touched(work);
     if (link.method == Hybrid::exact) link.hybrid->drop_known(link.contact->contacts());
     count_contacts(link, link.contact->contacts().size);
   }
@@ -131,6 +132,7 @@ void Simulation::Implementation::respond() {
   for (Body& body : bodies) {
     body.links_touching = 0;
     body.reshaped = false;
+    body.p_WC_found = body.rigid.p_WC;
     body.loads.contact = {};
     body.loads.contact_stiffness.setZero();
     body.loads.contact_damping.setZero();
@@ -139,8 +141,9 @@ void Simulation::Implementation::respond() {
     body.link_body = {body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), 0};
     if (moves(body)) body.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
   }
-  for (const Link& link : links) {
-    if (!link.contact || link.contact->contacts().size == 0) continue;
+  for (Link& link : links) {
+    link.reshaped = link.method != Hybrid::off || (link.reshaped && link.touches());
+    if (!link.touches()) continue;
     ++bodies[link.first].links_touching;
     ++bodies[link.second].links_touching;
   }
@@ -151,7 +154,7 @@ void Simulation::Implementation::respond() {
   const bool implicit = parameters.integrator == Integrator::implicit;
   PenaltyParameters penalty{parameters.contact_stiffness, parameters.contact_damping_ratio, true};
   for (Link& link : links) {
-    if (!link.contact || link.contact->contacts().size == 0) continue;
+    if (!link.touches()) continue;
     const LinkBody& first = bodies[link.first].link_body;
     const LinkBody& second = bodies[link.second].link_body;
     // An implicit step takes the other body as standing still in its own step: of two that move, each would answer with
@@ -165,20 +168,19 @@ void Simulation::Implementation::respond() {
       if (restored && !implicit) restore_forces(link);
       link.contact->sum_up(first, second, implicit);
     }
-    if (link.method != Hybrid::off) bodies[link.first].reshaped = bodies[link.second].reshaped = true;
+    if (link.reshaped) bodies[link.first].reshaped = bodies[link.second].reshaped = true;
     link.depth_max = link.contact->depth_max();
-    LinkSide on_first = link.contact->on_first();
-    LinkSide on_second = link.contact->on_second();
-    if (link.method == Hybrid::blend) blend(link, on_first, on_second);
-    link.on_second = on_second.wrench;
+    link.first_side = link.contact->on_first();
+    link.second_side = link.contact->on_second();
+    if (link.method == Hybrid::blend) blend(link, link.first_side, link.second_side);
     const auto add = [](Loads& loads, const LinkSide& side) {
       loads.contact += side.wrench;
       loads.contact_stiffness += side.stiffness;
       loads.contact_damping += side.damping;
       loads.contact_drift += side.drift;
     };
-    add(bodies[link.first].loads, on_first);
-    add(bodies[link.second].loads, on_second);
+    add(bodies[link.first].loads, link.first_side);
+    add(bodies[link.second].loads, link.second_side);
   }
 }
 
@@ -202,12 +204,9 @@ Wrench Simulation::Implementation::felt(const Body& body, const StepWork& work) 
 
 void Simulation::Implementation::integrate() {
   if (solver) solve_exactly();
+  share_contacts();
   for (Body& body : bodies) {
-    body.contact_wrench = body.loads.contact;
-    body.contact_wrench += body.exact_wrench;
     if (!moves(body)) continue;  // what nobody holds does not move
-    body.loads.contact_budget = body.reshaped && parameters.passive_contacts ? std::max(0.0, ledger.contact())
-                                                                             : std::numeric_limits<double>::infinity();
     const StepWork work =
         body.solved ? end_implicit(body.rigid, body.loads, body.implicit, body.velocity, body.exact_wrench, dt)
         : parameters.integrator == Integrator::implicit ? step_implicit(body.rigid, body.loads, dt)
@@ -217,9 +216,11 @@ void Simulation::Implementation::integrate() {
            "frame {}: the state of '{}' is not finite any more; lower the stiffness or the time step", frame,
            body.name);
     body.contact_wrench = work.contact;
+    body.contact_end = work.contact_end;
     if (body.held_by != kNone) held[body.held_by].on_hand = felt(body, work);
     ledger.add(work);
   }
+  tell_contacts();
 }
 
 void Simulation::Implementation::render() {
@@ -237,13 +238,16 @@ void Simulation::Implementation::follow_heads() {
 void Simulation::Implementation::take_stock() {
   if (cost.contacts > 0) ++collision_frames;
   totals.contacts += cost.contacts;
+  decltype(totals.constraint_frames) active{};  // 0 or 1 per kind
   for (const Link& link : links) {
     totals.penetration_max = std::max(totals.penetration_max, link.depth_max);
     totals.cache_hits += link.cache_hits;
     totals.cache_misses += link.cache_misses;
-    if (link.constraint != ConstraintKind::none) ++totals.constraint_frames[static_cast<std::size_t>(link.constraint)];
+    if (link.constraint != ConstraintKind::none) active[static_cast<std::size_t>(link.constraint)] = 1;
   }
-  for (const Body& body : bodies) totals.force_max = std::max(totals.force_max, body.contact_wrench.force.norm());
+  for (std::size_t kind = 0; kind < active.size(); ++kind) totals.constraint_frames[kind] += active[kind];
+  for (const Body& body : bodies)
+    if (moves(body)) totals.force_max = std::max(totals.force_max, body.contact_wrench.force.norm());
   energy = energy_now();
   fill_row();
 }

@@ -44,8 +44,12 @@ struct Body {
   std::uint64_t contacts = 0;
   unsigned links_touching = 0;  ///< of the last frame: shares the stability budget
   bool reshaped = false;        ///< a hybrid method changed forces of its contacts: they must not give energy
-  bool solved = false;          ///< by the exact response: moves with `velocity`
-  std::size_t island = kNone;   ///< of bodies that the exact response solves together: its first body
+  std::size_t group = kNone;    ///< of bodies that share what their contacts may do: its first body
+  ContactWork contact_work;     ///< of that body: the whole group's
+  ContactEnd contact_end;
+  Vector3d p_WC_found = Vector3d::Zero();  ///< m, centre of mass when contacts were found
+  bool solved = false;                     ///< by the exact response: moves with `velocity`
+  std::size_t island = kNone;              ///< of bodies that the exact response solves together: its first body
   int in_solver = exact::kFixed;
   ImplicitStep implicit;
   Vector6d velocity;
@@ -68,7 +72,10 @@ struct Link {
   ConstraintKind constraint = ConstraintKind::none;
   double alpha = 0;
   double depth_max = 0;
-  Wrench on_second;
+  bool reshaped = false;  ///< its voxels' contacts were changed by a method, or appeared when one was switched off
+  LinkSide first_side, second_side;  ///< of its voxels' contacts, if it touches
+  Wrench on_second;                  ///< as applied
+  [[nodiscard]] bool touches() const { return contact && contact->contacts().size > 0; }
 };
 
 struct Held {
@@ -124,6 +131,12 @@ struct Simulation::Implementation {
   void count_contacts(Link& link, std::uint32_t contacts);
   void respond();
   void integrate();
+
+  // sharing.cpp
+  void join_groups();
+  void share_contacts();
+  [[nodiscard]] Wrench applied(const LinkSide& mine, const Body& body, const LinkSide& theirs, const Body& other) const;
+  void tell_contacts();
 
   // hybrid.cpp
   [[nodiscard]] Hybrid method_of(const Link& link) const;

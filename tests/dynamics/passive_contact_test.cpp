@@ -1,4 +1,4 @@
-// A contact with a budget gives no more energy than that, and is otherwise as it was (Loads::contact_budget).
+// A contact with a budget gives no more energy than that, and is otherwise as it was (share_within).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,9 +14,17 @@ namespace {
 using test::brick;
 using test::tolerance;
 
-using Step = StepWork (*)(RigidBody&, const Loads&, double);
-
 constexpr double kStep = 1e-3;
+
+/// One of the two integrators, and a step of it within a budget [J].
+struct Method {
+  ContactWork (*contact_work)(const RigidBody&, const Loads&, double);
+  StepWork (*step)(RigidBody&, const Loads&, double);
+  StepWork within(double budget, RigidBody& body, Loads& loads) const {
+    loads.contact_share = share_within(budget, contact_work(body, loads, kStep));
+    return step(body, loads, kStep);
+  }
+};
 
 /// A body that flies and turns against a contact somewhere on it, drawn from `r`: leaving or approaching, with a hand's
 /// pull beside it.
@@ -42,7 +50,7 @@ struct Case {
   }
 };
 
-class PassiveContact : public testing::TestWithParam<Step> {};
+class PassiveContact : public testing::TestWithParam<Method> {};
 
 TEST_P(PassiveContact, GivesItsBudgetAndNoMore) {
   const RandomStream r(1, "passive contacts");
@@ -51,10 +59,9 @@ TEST_P(PassiveContact, GivesItsBudgetAndNoMore) {
     const Case start(r, i);
     for (const double budget : {0.0, 1e-6, 1e-4}) {
       Case free = start;
-      const StepWork all = GetParam()(free.body, free.loads, kStep);
+      const StepWork all = GetParam().step(free.body, free.loads, kStep);
       Case tight = start;
-      tight.loads.contact_budget = budget;
-      const StepWork work = GetParam()(tight.body, tight.loads, kStep);
+      const StepWork work = GetParam().within(budget, tight.body, tight.loads);
       EXPECT_LE(work.contact_work, budget + tolerance(1e-16));
       if (all.contact_work <= budget) continue;
       ++limited;
@@ -74,11 +81,11 @@ TEST_P(PassiveContact, ChangesNothingWithinItsBudget) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
     Case free(r, i);
     Case tight = free;
-    const StepWork all = GetParam()(free.body, free.loads, kStep);
-    tight.loads.contact_budget = 1e-5;
-    if (all.contact_work > tight.loads.contact_budget) continue;
+    const StepWork all = GetParam().step(free.body, free.loads, kStep);
+    constexpr double kBudget = 1e-5;
+    if (all.contact_work > kBudget) continue;
     ++unlimited;
-    const StepWork work = GetParam()(tight.body, tight.loads, kStep);
+    const StepWork work = GetParam().within(kBudget, tight.body, tight.loads);
     EXPECT_EQ(work.contact.force, all.contact.force);
     EXPECT_EQ(tight.body.v_C, free.body.v_C);
     EXPECT_EQ(tight.body.omega, free.body.omega);
@@ -94,8 +101,7 @@ TEST_P(PassiveContact, WithoutABudgetHoldsABodyAtRest) {
   loads.external.force = {0, 0, -2};
   loads.contact.force = {0, 0, 10};
   loads.contact_stiffness(2, 2) = 5000;
-  loads.contact_budget = 0;
-  const StepWork work = GetParam()(body, loads, kStep);
+  const StepWork work = GetParam().within(0, body, loads);
   EXPECT_LE(std::abs(work.contact.force.z() - 2), tolerance(1e-12));
   EXPECT_LE(std::abs(body.v_C.z()), tolerance(1e-15));
 }
@@ -107,13 +113,49 @@ TEST_P(PassiveContact, DoesNotHoldBackWhatLeaves) {
   loads.external.force = {0, 0, 3};
   loads.contact.force = {0, 0, 10};
   loads.contact_stiffness(2, 2) = 5000;
-  loads.contact_budget = 0;
-  const StepWork work = GetParam()(body, loads, kStep);
+  const StepWork work = GetParam().within(0, body, loads);
   EXPECT_EQ(work.contact.force.z(), 0);
   EXPECT_LE(std::abs(body.v_C.z() - 6 * kStep), tolerance(1e-15));
 }
 
-INSTANTIATE_TEST_SUITE_P(BothIntegrators, PassiveContact, testing::Values(step_semi_implicit, step_implicit));
+// What it says of the work of a share is what the step then does, whatever the share.
+TEST_P(PassiveContact, TellsTheWorkOfEveryShare) {
+  const RandomStream r(3, "passive contacts");
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Case start(r, i);
+    const ContactWork told = GetParam().contact_work(start.body, start.loads, kStep);
+    for (const double share : {0.0, 0.25, 1.0}) {
+      Case c = start;
+      c.loads.contact_share = share;
+      EXPECT_LE(std::abs(GetParam().step(c.body, c.loads, kStep).contact_work - told.of(share)), tolerance(1e-15));
+    }
+  }
+}
+
+// A load of two contacts divides into what each did.
+TEST_P(PassiveContact, DividesIntoItsParts) {
+  const RandomStream r(4, "passive contacts");
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    Case c(r, i);
+    const Case one = c;
+    const Case other(r, 1000 + i);
+    c.loads.contact += other.loads.contact;
+    c.loads.contact_stiffness += other.loads.contact_stiffness;
+    c.loads.contact_damping += other.loads.contact_damping;
+    c.loads.contact_share = i % 2 == 0 ? 1 : 0.3;
+    const StepWork work = GetParam().step(c.body, c.loads, kStep);
+    Wrench sum;
+    for (const Loads* part : {&one.loads, &other.loads})
+      sum += acted(part->contact, part->contact_stiffness, part->contact_damping, part->contact_drift, work.contact_end,
+                   kStep);
+    EXPECT_LE((sum.force - work.contact.force).norm(), tolerance(1e-12));
+    EXPECT_LE((sum.torque - work.contact.torque).norm(), tolerance(1e-12));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BothIntegrators, PassiveContact,
+                         testing::Values(Method{contact_work_semi_implicit, step_semi_implicit},
+                                         Method{contact_work_implicit, step_implicit}));
 
 }  // namespace
 }  // namespace verisim

@@ -1,0 +1,125 @@
+// What acts on one body acts back on the other, and what is written down is what acted.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/simulation/hybrid_scenes.hpp"
+#include "tests/support/tolerance.hpp"
+
+namespace verisim {
+namespace {
+
+using test::tolerance;
+
+/// One box flies past the middle of another: both turn.
+Scene two_free_boxes(Hybrid hybrid) {
+  static const BodyDescription box = scenes::body_of("a", *scenes::solid(Solid::Kind::box, {0.1, 0.1, 0.1}), 0.005);
+  Scene scene;
+  scene.parameters.hybrid = hybrid;
+  scene.parameters.all_bodies_are_dynamic = true;
+  scene.parameters.duration = 0.5;
+  scene.bodies = {box, box};
+  scene.bodies[1].name = "b";
+  scene.bodies[0].twist.linear = {0.2, 0.05, 0};
+  scene.bodies[1].X_WB.position = {0.12, 0.03, 0};
+  return scene;
+}
+
+class EveryMethod : public testing::TestWithParam<Hybrid> {};
+INSTANTIATE_TEST_SUITE_P(Hybrid, EveryMethod,
+                         testing::Values(Hybrid::off, Hybrid::restore, Hybrid::blend, Hybrid::exact));
+
+TEST_P(EveryMethod, KeepsTheMomentumOfTwoFreeBodies) {
+  Simulation simulation(two_free_boxes(GetParam()), {});
+  const double mass = simulation.mass(0);
+  const auto momentum = [&] {
+    return Vector3d(mass * (simulation.body_twist(0).linear + simulation.body_twist(1).linear));
+  };
+  const Vector3d before = momentum();
+  const Vector3d first_before = simulation.body_twist(0).linear;
+  while (simulation.frame() < simulation.frames_planned()) {
+    simulation.step();
+    const Vector3d sum = simulation.body_force(0).force + simulation.body_force(1).force;
+    ASSERT_LE(sum.norm(), tolerance(1e-9 * simulation.body_force(0).force.norm()));
+  }
+  EXPECT_GT((simulation.body_twist(0).linear - first_before).norm(), 0.05) << "they have met";
+  EXPECT_LE((momentum() - before).norm(), tolerance(1e-9 * before.norm()));
+  EXPECT_GE(simulation.energy().contact, -1e-12);
+}
+
+/// The wrench of the row's link [N, N m].
+Wrench link_wrench(const Simulation& simulation, const std::string& link) {
+  Schema schema;
+  simulation.describe(schema);
+  std::vector<std::byte> row(schema.row_bytes());
+  simulation.write_row(row.data());
+  for (const Column& column : schema.columns()) {
+    if (column.path != "/state/link/" + link + "/wrench") continue;
+    std::array<double, 6> v{};
+    std::memcpy(v.data(), row.data() + column.offset, sizeof v);
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  }
+  ADD_FAILURE() << "no link " << link;
+  return {};
+}
+
+TEST_P(EveryMethod, TellsOfALinkAndOfAFixedBodyWhatActedOnTheOneThatMoves) {
+  for (const Integrator integrator : {Integrator::semi_implicit, Integrator::implicit}) {
+    Scene scene = scenes::brep_pin_in_hole(GetParam());
+    scene.parameters.integrator = integrator;
+    Simulation simulation(std::move(scene), {});
+    double most = 0;
+    while (simulation.frame() < simulation.frames_planned()) {
+      simulation.step();
+      const Wrench on_block = simulation.body_force(0);
+      const Wrench on_pin = simulation.body_force(1);
+      const double size = on_pin.force.norm();
+      most = std::max(most, size);
+      ASSERT_LE((on_block.force + on_pin.force).norm(), tolerance(1e-9 * (1 + size))) << simulation.frame();
+      const Wrench link = link_wrench(simulation, "block~pin");
+      ASSERT_LE((link.force - on_pin.force).norm(), tolerance(1e-9 * (1 + size))) << simulation.frame();
+      ASSERT_LE((link.torque - on_pin.torque).norm(), tolerance(1e-9 * (1 + size))) << simulation.frame();
+    }
+    EXPECT_GT(most, 0.1);
+    EXPECT_EQ(simulation.totals().force_max, most);
+  }
+}
+
+/// The voxels answer before the precise surfaces do, and at once with a depth: they must not throw the pin out.
+TEST(SwitchingExactOff, GivesNoEnergy) {
+  Simulation simulation(scenes::brep_pin_in_hole(Hybrid::exact), {});
+  double least = 0;
+  bool on = true;
+  std::uint64_t contacts = 0;
+  while (simulation.frame() < simulation.frames_planned()) {
+    if (simulation.frame() % 5 == 4) simulation.set_hybrid_enabled(1, on = !on);
+    simulation.step();
+    contacts += on ? 0 : simulation.body_contacts(1);
+    const Simulation::Energy e = simulation.energy();
+    least = std::min(least, e.dissipated + e.contact + e.numerical);
+  }
+  EXPECT_GT(contacts, 100U) << "the voxels touched";
+  EXPECT_GE(least, -1e-12);
+}
+
+TEST(ConstraintFrames, CountAFrameOnceHoweverManyLinksAreHeld) {
+  Scene scene = scenes::brep_pin_in_hole(Hybrid::restore);
+  scene.devices.clear();
+  scene.grasps.clear();
+  scene.parameters.duration = 0.02;
+  scene.bodies[1].X_WB.position = {0.0045, 0.001, 0.06};
+  scene.bodies.push_back(scene.bodies[1]);
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[2].name = "second pin";
+  scene.bodies[3].name = "second block";
+  for (const std::size_t i : {2U, 3U}) scene.bodies[i].X_WB.position.x() += 1;
+  scene.parameters.all_bodies_are_dynamic = true;
+  Simulation simulation(std::move(scene), {});
+  while (simulation.frame() < simulation.frames_planned()) simulation.step();
+  const auto frames = simulation.totals().constraint_frames[static_cast<std::size_t>(ConstraintKind::cylindrical)];
+  EXPECT_GT(frames, 0U);
+  EXPECT_LE(frames, simulation.frame());
+}
+
+}  // namespace
+}  // namespace verisim
