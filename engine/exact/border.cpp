@@ -33,7 +33,7 @@ bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot)
       if (is_beyond(edge, face, foot)) return false;
     } else {
       const double distance = body.faces[across(edge, face)].surface->at(foot).distance;
-      if (!edge.speaks_for(foot, distance)) continue;
+      if (!edge.speaks_for(face, foot, distance)) continue;
       if (edge.fold == Fold::convex ? distance > 0 : distance < 0) return false;
     }
   }
@@ -56,7 +56,7 @@ bool is_outermost(const Meeting& meeting, const Candidate& c, std::uint32_t face
     const std::uint32_t third = across(edge, face);
     if (edge.fold != Fold::convex || third == other) continue;
     const double distance = meeting.base.faces[third].surface->at(c.p).distance;
-    if (distance > c.at.distance && edge.speaks_for(c.p, distance)) return false;
+    if (distance > c.at.distance && edge.speaks_for(face, c.p, distance)) return false;
   }
   return answer.where != Trim::Where::outside;
 }
@@ -153,7 +153,7 @@ bool admit(const Meeting& meeting, const PlacedFeature& placed, std::uint32_t fa
     if (edge.fold == Fold::smooth && is_beyond(edge, face, foot)) return false;
     if (edge.fold == Fold::smooth) continue;
     const SurfaceAt there = meeting.base.faces[other].surface->at(c.p);
-    if (!edge.speaks_for(c.p, there.distance)) continue;
+    if (!edge.speaks_for(face, c.p, there.distance)) continue;
     if (edge.fold == Fold::concave) {
       // Behind the face across: where the wall there is thin, a place outside of the body on its far side.
       if (there.distance < -meeting.frame.margin) return false;

@@ -156,8 +156,14 @@ class PartTaker {
     for (const std::uint32_t f : edge.faces) borders_[f].push_back({number, points_[e]});
     if (surface[0] != nullptr || surface[1] != nullptr) add_edge_features(body_, edge, made, points_[e], sign);
     const std::vector<Vector3d>& p = points_[e];
-    ends_.push_back({p.front(), tangent(0), number, 0});
-    ends_.push_back({p.back(), -tangent(p.size() - 1), number, 1});
+    const auto out_of_both = [&](std::size_t i) {
+      std::array<Vector3d, 2> out = {Vector3d::Zero(), Vector3d::Zero()};
+      for (std::size_t side = 0; side < 2; ++side)
+        if (surface[side] != nullptr) out[side] = out_of(i, side);
+      return out;
+    };
+    ends_.push_back({p.front(), tangent(0), number, 0, out_of_both(0)});
+    ends_.push_back({p.back(), -tangent(p.size() - 1), number, 1, out_of_both(p.size() - 1)});
     body_.edges.push_back(std::move(made));
   }
 
@@ -181,7 +187,7 @@ class PartTaker {
 
 }  // namespace
 
-bool ExactEdge::speaks_for(const Vector3d& p, double distance) const {
+bool ExactEdge::speaks_for(std::uint32_t face, const Vector3d& p, double distance) const {
   constexpr double kLittle = 5e-5;  // m: deeper than contacts go
   if (extent == Extent::all) return true;
   const Vector3d d = p - middle;
@@ -189,7 +195,8 @@ bool ExactEdge::speaks_for(const Vector3d& p, double distance) const {
   const double b = on.dot(d);
   const bool is_line = extent == Extent::line;
   const double beyond = is_line ? std::abs(a) - half : half * std::sqrt(a * a + b * b) - a;
-  return beyond <= (distance < 0 ? kLittle : 0) || speaks_beyond[(is_line ? a : b) > 0 ? 1 : 0];
+  const std::size_t end = (is_line ? a : b) > 0 ? 1 : 0;
+  return beyond <= (distance < 0 ? kLittle : 0) || speaks_beyond[faces[0] == face ? 0 : 1][end];
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {

@@ -42,18 +42,20 @@ struct ExactEdge {
   std::array<std::uint32_t, 2> faces{};  ///< numbers in ExactBody::faces
   Fold fold = Fold::smooth;
   /// A point may lie beyond the edge's end, and then the edge says nothing about it, unless the end is a corner where
-  /// all edges are convex: there the material is inside of all of them. Lines: `along` . (p - middle) beyond +-half.
-  /// Arcs of circles: middle the circle's centre, `along` and `on` towards the arc's middle and a quarter turn on,
-  /// half the cosine of half the arc. Others and full circles always speak. At a corner with a concave edge the
-  /// material is inside of this or of the next: a little beyond the end the edge still speaks for a point inside of
-  /// both.
+  /// all edges are convex: there the material is inside of all of them. Nor is there a doubt for one of the two faces
+  /// if its own corner there is less than half a turn wide: who is across the edge is off that face. Lines: `along` .
+  /// (p - middle) beyond +-half. Arcs of circles: middle the circle's centre, `along` and `on` towards the arc's middle
+  /// and a quarter turn on, half the cosine of half the arc. Others and full circles always speak. At a corner with a
+  /// concave edge the material is inside of this or of the next: a little beyond the end the edge still speaks for a
+  /// point inside of both.
   enum class Extent : std::uint8_t { line, arc, all };
   Extent extent = Extent::all;
   Vector3d middle = Vector3d::Zero(), along = Vector3d::Zero(), on = Vector3d::Zero();
   double half = 0;
-  std::array<bool, 2> speaks_beyond = {false, false};  ///< its beginning, its end
+  std::array<std::array<bool, 2>, 2> speaks_beyond = {};  ///< to either face: its beginning, its end
+  /// Is it this edge that ends `face` there?
   /// @param distance  of p from the face across the edge [m]
-  [[nodiscard]] bool speaks_for(const Vector3d& p, double distance) const;
+  [[nodiscard]] bool speaks_for(std::uint32_t face, const Vector3d& p, double distance) const;
 
   /// Smooth edges only: points along the edge with, per point, the directions out of either face across the edge.
   struct Mark {

@@ -226,6 +226,30 @@ void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) 
   }
 }
 
+namespace {
+
+/// Is the corner in which two edges of a face end less than half a turn wide, seen from the face?
+bool is_pointed(const EdgeEnd& a, std::size_t side_a, const EdgeEnd& b, std::size_t side_b) {
+  constexpr double kPointed = 0.25;  // a curve's first chord leaves its tangent by up to pi / 16
+  return b.into.dot(a.out_of[side_a]) < -kPointed && a.into.dot(b.out_of[side_b]) < -kPointed;
+}
+
+/// Convex edges between a face with a pointed corner and its neighbours: they go on to speak for that face.
+void take_pointed_corners(ExactBody& body, std::span<const EdgeEnd* const> here) {
+  for (const EdgeEnd* a : here) {
+    ExactEdge& edge = body.edges[a->edge];
+    for (const EdgeEnd* b : here) {
+      if (a == b) continue;
+      const ExactEdge& next = body.edges[b->edge];
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t j = 0; j < 2; ++j)
+          if (edge.faces[i] == next.faces[j] && is_pointed(*a, i, *b, j)) edge.speaks_beyond[i][a->which] = true;
+    }
+  }
+}
+
+}  // namespace
+
 void take_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
   constexpr double kSame = 1e-7;  // m: ends nearer than this are one corner
   std::stable_sort(ends.begin(), ends.end(),
@@ -241,10 +265,12 @@ void take_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
       here.push_back(&ends[j]);
     }
     const auto is_convex = [&](const EdgeEnd* end) { return body.edges[end->edge].fold == Fold::convex; };
-    if (here.size() < 3 || !std::all_of(here.begin(), here.end(), is_convex)) continue;
+    if (here.size() < 3) continue;
+    take_pointed_corners(body, here);
+    if (!std::all_of(here.begin(), here.end(), is_convex)) continue;
     Sample sample;
     for (const EdgeEnd* end : here) {
-      body.edges[end->edge].speaks_beyond[end->which] = true;
+      for (auto& to_face : body.edges[end->edge].speaks_beyond) to_face[end->which] = true;
       sample.wedge.push_back(end->into);
     }
     add_point(body, ends[i].point, 0, kNoFace, sample);

@@ -22,11 +22,13 @@ void add_face_features(ExactBody& body, const Face& face, std::uint32_t number);
 /// One edge's end, for take_corners.
 struct EdgeEnd {
   Vector3d point;
-  Vector3d into;       ///< unit, along the edge
-  std::uint32_t edge;  ///< number in ExactBody::edges
-  std::size_t which;   ///< 0: its beginning, 1: its end
+  Vector3d into;                   ///< unit, along the edge
+  std::uint32_t edge;              ///< number in ExactBody::edges
+  std::size_t which;               ///< 0: its beginning, 1: its end
+  std::array<Vector3d, 2> out_of;  ///< unit, out of either face across the edge; zero: not known
 };
-/// Points where three or more edges end, all of them convex: features, and the edges speak for what is beyond.
+/// Points where three or more edges end: for which faces the edges speak for what is beyond, and, where all of the
+/// edges are convex, features.
 void take_corners(ExactBody& body, std::vector<EdgeEnd> ends);
 
 /// The box around a run's balls.

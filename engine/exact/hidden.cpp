@@ -22,7 +22,7 @@ const ExactEdge* hiding_edge(const Meeting& meeting, const Vector3d& p, std::uin
     const ExactEdge& edge = meeting.base.edges[e];
     if (edge.fold != Fold::convex) continue;
     const SurfaceAt other = meeting.base.faces[across(edge, face)].surface->at(p);
-    if (edge.speaks_for(p, other.distance) && !decides(meeting, p, mine, other, false)) return &edge;
+    if (edge.speaks_for(face, p, other.distance) && !decides(meeting, p, mine, other, false)) return &edge;
   }
   return nullptr;
 }
@@ -33,7 +33,7 @@ bool is_hidden_by(const Meeting& meeting, const ExactEdge& edge, std::uint32_t f
   const auto number = static_cast<std::uint32_t>(&edge - meeting.base.edges.data());
   const Trim::Answer answer = meeting.base.faces[face].trim->find(*meeting.base.faces[face].surface, p);
   return std::find(answer.edges.begin(), answer.edges.end(), number) != answer.edges.end() &&
-         edge.speaks_for(p, distance);
+         edge.speaks_for(face, p, distance);
 }
 
 Lead lead_of(const Meeting& meeting, const PreciseSurface& other, const PreciseSurface& mine,

@@ -71,6 +71,13 @@ int Trim::Axis::neighbour(int i, int step) const {
   return n >= 0 && n < count ? n : -1;
 }
 
+std::array<int, 2> Trim::Axis::around_of(double x) const {
+  constexpr double kRounding = 1e-6;  // of a cell
+  const double i = (x - from) * per_cell;
+  const double within = i - std::floor(i);
+  return {within < kRounding ? -2 : -1, within > 1 - kRounding ? 2 : 1};
+}
+
 int Trim::cell_at(const std::array<double, 2>& chart) const {
   const int a = a_.index(chart[0]);
   const int b = b_.index(chart[1]);
@@ -123,6 +130,14 @@ Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<co
     });
   }
 
+  // A ball's pole is one place of all the last cells, and to rounding of those beyond them, which are nowhere else.
+  const auto row = [&](int b) { return cells_.begin() + std::ptrdiff_t{b} * a_.count; };
+  constexpr double kPole = 1 - 1e-9;
+  if (surface.kind() == PreciseSurface::Kind::sphere) {
+    if (low[1] < -kPole) std::copy_n(row(1), a_.count, row(0));
+    if (high[1] > kPole) std::copy_n(row(b_.count - 2), a_.count, row(b_.count - 1));
+  }
+
   // Cells that an edge passes, and their neighbours.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> passes;  // cell, edge
   const bool has_poles = surface.kind() == PreciseSurface::Kind::sphere;
@@ -133,9 +148,11 @@ Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<co
     const int a = at % a_.count;
     const int b = at / a_.count;
     const bool near_pole = has_poles && std::abs(chart[1]) > 0.9;  // turns are short there: all of them are near
-    const int wide = near_pole ? a_.count / 2 : 1;
-    for (int db = -1; db <= 1; ++db) {
-      for (int da = -wide; da <= wide; ++da) {
+    const int half = a_.count / 2;
+    const auto [a_first, a_last] = near_pole ? std::array{-half, half} : a_.around_of(chart[0]);
+    const auto [b_first, b_last] = b_.around_of(chart[1]);
+    for (int db = b_first; db <= b_last; ++db) {
+      for (int da = a_first; da <= a_last; ++da) {
         const int na = a_.neighbour(a, da);
         const int nb = b_.neighbour(b, db);
         if (na >= 0 && nb >= 0) passes.emplace_back(static_cast<std::uint32_t>(nb * a_.count + na), edge);

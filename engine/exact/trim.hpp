@@ -40,6 +40,8 @@ class Trim {
     bool around = false;  ///< the last cell's neighbour is the first
     [[nodiscard]] int index(double x) const;
     [[nodiscard]] int neighbour(int i, int step) const;  ///< -1: none
+    /// Steps to the first and the last neighbour of x. What lies on the limit of two cells, to rounding, is in both.
+    [[nodiscard]] std::array<int, 2> around_of(double x) const;
   };
   [[nodiscard]] int cell_at(const std::array<double, 2>& chart) const;
 

@@ -144,20 +144,31 @@ void Simulation::Implementation::solve_exactly() {
   for (Body& body : bodies) {
     body.solved = false;
     body.exact_wrench = {};
+    if (!body.exact || !moves(body)) continue;
+    body.implicit = begin_implicit(body.rigid, body.loads, dt);
+    body.velocity = body.implicit.free;
   }
   for (Link& link : links) {
-    if (!link.near || link.method != Hybrid::exact) continue;
-    for (Body* body : {&bodies[link.first], &bodies[link.second]}) {
-      if (body->solved || !moves(*body)) continue;
-      body->solved = true;
-      body->implicit = begin_implicit(body->rigid, body->loads, dt);
-      body->velocity = body->implicit.free;
-    }
+    if (link.method != Hybrid::exact) continue;
+    Body& first = bodies[link.first];
+    Body& second = bodies[link.second];
+    // The broad phase knows where bodies are, not how fast: a contact is to be there before the bodies overlap.
+    link.near = link.near || box_gap(first, second) <= grown_by(first) + grown_by(second) + closing(link);
+    if (!link.near) continue;
+    for (Body* body : {&first, &second}) body->solved = body->solved || moves(*body);
     find_exact_contacts(link);
   }
   join_islands();
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].solved && bodies[i].island == i) solve_island(i);
+}
+
+/// How far ahead contacts of two bodies are looked for [m].
+double Simulation::Implementation::closing(const Link& link) const {
+  double sum = kExactMargin;
+  for (const Body* body : {&bodies[link.first], &bodies[link.second]})
+    if (moves(*body)) sum += dt * speed_of(*body, body->velocity);
+  return sum;
 }
 
 void Simulation::Implementation::find_exact_contacts(Link& link) {
@@ -168,10 +179,7 @@ void Simulation::Implementation::find_exact_contacts(Link& link) {
     motion.before = {body.rigid.v_C, body.rigid.omega};
     return motion;
   };
-  double closing = 0;
-  for (const Body* body : {&bodies[link.first], &bodies[link.second]})
-    if (body->solved) closing += dt * speed_of(*body, body->velocity);
-  link.exact->find(motion_of(bodies[link.first]), motion_of(bodies[link.second]), dt, kExactMargin + closing);
+  link.exact->find(motion_of(bodies[link.first]), motion_of(bodies[link.second]), dt, closing(link));
   cost.exact_samples += link.exact->cost().samples;
   link.depth_max = std::max(link.depth_max, link.exact->depth_max());
 }

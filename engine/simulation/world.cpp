@@ -137,6 +137,14 @@ void Simulation::Implementation::place_bodies(const Scene& scene) {
   }
 }
 
+double Simulation::Implementation::box_gap(const Body& a, const Body& b) {
+  return distance(in_world(a.bounds_B, a.rigid.pose()), in_world(b.bounds_B, b.rigid.pose()));
+}
+
+double Simulation::Implementation::grown_by(const Body& body) {
+  return body.voxels ? 2 * body.voxels->voxmap.voxel_size : 0;
+}
+
 /// How far the surface of a body can get from where it starts [m]; infinite for what flies freely.
 double Simulation::Implementation::reach_of(std::size_t index) const {
   const Body& body = bodies[index];
@@ -153,9 +161,7 @@ void Simulation::Implementation::voxelize_bodies(const Scene& scene) {
     bool wanted = false;
     for (std::size_t j = 0; j < bodies.size() && !wanted; ++j) {
       if (i == j || !(bodies[i].can_move || bodies[j].can_move)) continue;
-      const double gap = distance(in_world(bodies[i].bounds_B, bodies[i].rigid.pose()),
-                                  in_world(bodies[j].bounds_B, bodies[j].rigid.pose()));
-      wanted = gap <= reach_of(i) + reach_of(j);
+      wanted = box_gap(bodies[i], bodies[j]) <= reach_of(i) + reach_of(j);
     }
     if (!wanted) continue;
     const BodyDescription& description = scene.bodies[i];
@@ -177,9 +183,8 @@ void Simulation::Implementation::voxelize_bodies(const Scene& scene) {
 void Simulation::Implementation::make_links() {
   std::vector<BroadPhaseBody> boxes;
   for (const Body& body : bodies) {
-    // The voxels reach up to one voxel beyond the mesh, on either side of a pair.
-    const double grown = body.voxels ? 2 * body.voxels->voxmap.voxel_size : 0;
-    boxes.push_back({body.bounds_B.center(), 0.5 * body.bounds_B.size() + Vector3d::Constant(grown), body.can_move});
+    const Vector3d half = 0.5 * body.bounds_B.size() + Vector3d::Constant(grown_by(body));
+    boxes.push_back({body.bounds_B.center(), half, body.can_move});
   }
   broad_phase = std::make_unique<BroadPhase>(boxes);
   link_of_pair.assign(bodies.size() * bodies.size(), kNone);

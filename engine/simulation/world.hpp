@@ -123,6 +123,11 @@ struct Simulation::Implementation {
   void make_hybrid(const BodyDescription& description, Body& body);
   void make_hybrid(Link& link);
   [[nodiscard]] double reach_of(std::size_t body) const;
+  /// m, between the boxes around two bodies' meshes, along the world's axes.
+  [[nodiscard]] static double box_gap(const Body& a, const Body& b);
+  /// m, by which the broad phase takes a body to be larger than its mesh: its voxels reach up to one voxel beyond that,
+  /// on either side of a pair.
+  [[nodiscard]] static double grown_by(const Body& body);
 
   // step.cpp: the stages of one frame, in their order
   void sample_devices(double t);
@@ -147,6 +152,7 @@ struct Simulation::Implementation {
   void blend(Link& link, LinkSide& on_first, LinkSide& on_second);
   void note(Link& link, const RestoreResult& result);
   void solve_exactly();
+  [[nodiscard]] double closing(const Link& link) const;
   void find_exact_contacts(Link& link);
   void join_islands();
   void solve_island(std::size_t island);

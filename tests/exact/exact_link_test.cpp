@@ -126,6 +126,82 @@ TEST(CornerOverAPlane, IsAsFarAwayAsItsHeight) {
   }
 }
 
+/// A solid of two boxes: where they meet edges are concave, and at their ends two convex edges meet a concave one or
+/// two concave ones a convex one.
+struct TwoBoxes {
+  Vector3d first, second;  ///< m, sizes
+  Vector3d at;             ///< m, the second's middle
+  [[nodiscard]] Solid solid() const {
+    return combine(Kind::sum, box(first), placed(box(second), {at, Quaterniond::Identity()}));
+  }
+  [[nodiscard]] double distance(const Vector3d& p) const {
+    return std::min(distance_to_box(p, 0.5 * first), distance_to_box(p - at, 0.5 * second));
+  }
+};
+const TwoBoxes kCross{{0.08, 0.02, 0.016}, {0.02, 0.06, 0.016}, {0, 0, 0}};
+const TwoBoxes kBossOnAPlate{{0.08, 0.06, 0.016}, {0.03, 0.02, 0.02}, {0.01, 0.005, 0.018}};
+
+// Outside of two boxes the nearer one's distance is that of both, also beside the ends of concave edges, where a face's
+// plane goes on above, below and beside the face.
+TEST(BallAndTwoBoxes, AreAsFarApartAsTheClosedFormSays) {
+  constexpr double kRadius = 0.007;
+  for (const TwoBoxes& base : {kCross, kBossOnAPlate}) {
+    Pair pair(base.solid(), make(Kind::sphere, {kRadius}));
+    int near = 0;
+    for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+      Draw draw(seed);
+      const Vector3d p = draw.in_box(Vector3d(0.05, 0.045, 0.04));
+      const double gap = base.distance(p) - kRadius;
+      if (gap < -0.0019) continue;
+      ASSERT_NEAR(pair.gap_at({p, draw.rotation()}, kMargin), std::min(gap, kMargin), kRounding)
+          << "seed " << seed << " at " << p.transpose();
+      near += gap < kMargin ? 1 : 0;
+    }
+    EXPECT_GT(near, 1500);
+  }
+}
+
+// A slider that lies on a plate beside a boss, or on a cross, pressed in by a micrometre: its edges run past the
+// planes of all other faces, and none of these has a say.
+TEST(SliderOnTwoBoxes, OverlapsByWhatItIsPressedInAndNoMore) {
+  constexpr double kPressed = 1e-6;
+  const Vector3d slider(0.02, 0.016, 0.01);
+  for (const TwoBoxes& base : {kCross, kBossOnAPlate}) {
+    Pair pair(base.solid(), box(slider));
+    const bool has_boss = base.at.z() > 0;
+    int beside = 0;
+    for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+      Draw draw(seed);
+      Vector3d p = draw.in_box(Vector3d(0.045, 0.035, 0));
+      p.z() = 0.5 * (base.first.z() + slider.z()) - kPressed;
+      const Vector3d off = (p - base.at).cwiseAbs() - 0.5 * (base.second + slider);
+      if (has_boss && std::max(off.x(), off.y()) < 0) continue;
+      ASSERT_GE(pair.gap_at({p, Quaterniond::Identity()}, 1e-4), -kPressed - kRounding)
+          << "seed " << seed << " at " << p.transpose();
+      beside += std::max(off.x(), off.y()) < 0.001 ? 1 : 0;
+    }
+    EXPECT_GT(beside, 100);
+  }
+}
+
+// What lies on a ball's pole touches it where all turns of the ball's chart are one place, and its last cells end.
+TEST(PlateOnABall, RestsOnThePole) {
+  constexpr double kRadius = 0.03;
+  constexpr double kGap = 1e-5;
+  const Vector3d size(0.04, 0.04, 0.01);
+  for (const double spacing : {0.0015, 0.002, 0.0031, 0.008, 0.011}) {
+    Pair pair(make(Kind::sphere, {kRadius}), box(size), spacing);
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      Draw draw(seed);
+      const double side = seed % 2 == 0 ? 1 : -1;
+      const Vector3d p(draw.between(-0.015, 0.015), draw.between(-0.015, 0.015),
+                       side * (kRadius + 0.5 * size.z() + kGap));
+      const Quaterniond rotation(Eigen::AngleAxisd(draw.between(-3, 3), Vector3d::UnitZ()));
+      ASSERT_NEAR(pair.gap_at({p, rotation}, kMargin), kGap, kRounding) << "spacing " << spacing << " seed " << seed;
+    }
+  }
+}
+
 Solid ring_shape(double outer, double inner, double height) {
   return combine(Kind::difference, make(Kind::cylinder, {outer, height}), make(Kind::cylinder, {inner, 2 * height}));
 }
