@@ -76,7 +76,7 @@ bool cross_edge(const Meeting& meeting, const PlacedFeature& placed, std::uint32
   double d_b = a.at(p_b).distance - b.at(p_b).distance;
   if (!(d_a < 0 && d_b > 0)) return false;
   SurfaceAt other_at{};
-  constexpr int kStepsMax = 6;
+  constexpr int kStepsMax = 30;
   for (int i = 0; i < kStepsMax; ++i) {  // false position, with the Illinois rule
     const double t = t_a + (t_b - t_a) * (d_a / (d_a - d_b));
     c.place = place_at(placed.is_arc(), meeting.mover.sample_c[c.sample], meeting.mover.sample_s[c.sample], t);

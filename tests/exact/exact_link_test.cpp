@@ -202,6 +202,27 @@ TEST(PlateOnABall, RestsOnThePole) {
   }
 }
 
+// A box lies on a plate with a hollow, all but flush: where its edges cross the hollow's rim, at whatever angle, it is
+// no deeper in than anywhere.
+TEST(BoxOverAHollow, OverlapsByWhatItIsPressedInWhereItsEdgesCrossTheRim) {
+  constexpr double kLean = 1e-6;  // rad
+  const Vector3d plate(0.1, 0.1, 0.02);
+  const Vector3d above(0.04, 0.04, 0.01);
+  const Pose top{{0, 0, 0.5 * plate.z()}, Quaterniond::Identity()};
+  for (const double radius : {0.016, 0.02, 0.026}) {
+    Pair pair(combine(Kind::difference, box(plate), placed(make(Kind::sphere, {radius}), top)), box(above), 0.01);
+    for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+      Draw draw(seed);
+      const Vector3d lean(draw.between(-kLean, kLean), draw.between(-kLean, kLean), 0);
+      const double deepest = 0.5 * (above.x() * std::abs(lean.y()) + above.y() * std::abs(lean.x())) + 1e-9;
+      Vector3d p = draw.in_box(Vector3d(0.02, 0.02, 0));
+      p.z() = 0.5 * (plate.z() + above.z()) - 1e-9;
+      ASSERT_GE(pair.gap_at({p, rotation_from_vector(lean)}, 1e-4), -deepest - kRounding)
+          << "radius " << radius << " seed " << seed << " at " << p.transpose();
+    }
+  }
+}
+
 Solid ring_shape(double outer, double inner, double height) {
   return combine(Kind::difference, make(Kind::cylinder, {outer, height}), make(Kind::cylinder, {inner, 2 * height}));
 }
