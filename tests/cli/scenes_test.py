@@ -122,7 +122,7 @@ class Scenes(ProgramTest):
 GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "48a4d45e9e7ee7ff"),
     ("peg_in_hole_step", ["--duration", "3"], "864bdb1e9c923816"),
-    ("head_tracking", [], "d78bb0101a9b08f1"),
+    ("head_tracking", [], "ecbf4ac4a4144a3a"),
     ("slide", [], "27a4259b53a11710"),
     ("stack", [], "66e945f3625d6f5f"),
 ]
