@@ -29,9 +29,9 @@ class IsoFit(ProgramTest):
         return summary["outcome"] == "inserted"
 
     def assert_forces_are_continuous(self, run_file, nominal, what):
-        """What changes from frame to frame is what the hand presses, for contact may begin or end with all of it, and
-        what stops the pin in the two frames, whose forces may come from opposite walls: the speeds that it came with,
-        its tremor's, to and fro, at least. And never more than stops the pin at the hand's speed, and its push."""
+        """Of two frames the one's force may come from a wall and the other's from that opposite: each holds against
+        what the hand presses then, and stops the pin, whose speed is that which it came with, its tremor's at least. And
+        never is a step more than stops the pin at the hand's speed, and its push."""
         d = nominal * 1e-3
         mass = 7800 * math.pi / 4 * d * d * 2 * d
         with h5py.File(run_file) as f:
@@ -41,7 +41,7 @@ class IsoFit(ProgramTest):
         steps, press = norm(numpy.diff(force, axis=0)), norm(press)
         before = numpy.concatenate([[0], norm(velocity[:-1])])
         stopped = numpy.maximum(before[:-1] + before[1:], 2 * TREMBLE)
-        bound = numpy.minimum(mass * stopped / STEP + numpy.maximum(press[:-1], press[1:]), mass * SPEED / STEP + PUSH)
+        bound = numpy.minimum(mass * stopped / STEP + press[:-1] + press[1:], mass * SPEED / STEP + PUSH)
         worst = (steps - bound).argmax()
         self.assertLessEqual(steps[worst], bound[worst], f"{what}, frame {worst + 1}")
 
