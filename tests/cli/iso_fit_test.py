@@ -30,8 +30,8 @@ class IsoFit(ProgramTest):
 
     def assert_forces_are_continuous(self, run_file, nominal, what):
         """Of two frames the one's force may come from a wall and the other's from that opposite: each holds against
-        what the hand presses then, and stops the pin, whose speed is that which it came with, its tremor's at least. And
-        never is a step more than stops the pin at the hand's speed, and its push."""
+        what the hand presses then, and stops the pin, whose speed is that which it came with, its tremor's at least.
+        Never is a step more than stops the pin at the hand's speed, and its push."""
         d = nominal * 1e-3
         mass = 7800 * math.pi / 4 * d * d * 2 * d
         with h5py.File(run_file) as f:
