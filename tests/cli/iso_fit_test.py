@@ -30,16 +30,16 @@ class IsoFit(ProgramTest):
 
     def assert_forces_are_continuous(self, run_file, nominal, what):
         """Of two frames the one's force may come from a wall and the other's from that opposite: each holds against
-        what the hand presses then, and stops the pin, whose speed is that which it came with, its tremor's at least.
-        Never is a step more than stops the pin at the hand's speed, and its push."""
+        what the hand presses then, and stops the pin, at the speed that its fastest end came with, the tremor's at
+        least. Never is a step more than stops the pin at the hand's speed, and its push."""
         d = nominal * 1e-3
         mass = 7800 * math.pi / 4 * d * d * 2 * d
         with h5py.File(run_file) as f:
             force, press = (f[f"state/{name}/wrench"][:, :3] for name in ("link/block~pin", "device/hand"))
-            velocity = f["state/body/pin/twist"][:, :3]
+            twist = f["state/body/pin/twist"][()]
         norm = functools.partial(numpy.linalg.norm, axis=1)
         steps, press = norm(numpy.diff(force, axis=0)), norm(press)
-        before = numpy.concatenate([[0], norm(velocity[:-1])])
+        before = numpy.concatenate([[0], (norm(twist[:, :3]) + d * norm(twist[:, 3:]))[:-1]])  # d: half its length
         stopped = numpy.maximum(before[:-1] + before[1:], 2 * TREMBLE)
         bound = numpy.minimum(mass * stopped / STEP + press[:-1] + press[1:], mass * SPEED / STEP + PUSH)
         worst = (steps - bound).argmax()
