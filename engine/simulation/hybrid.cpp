@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
-#include "engine/simulation/world.hpp"
+#include "engine/simulation/groups.hpp"
 
 namespace verisim {
 namespace {
@@ -118,8 +118,7 @@ void Simulation::Implementation::blend(Link& link, LinkSide& on_first, LinkSide&
   const Matrix3d R_WA = map.rigid.R_WB.toRotationMatrix();
   const Wrench pull_W{R_WA * pull.on_b.force, R_WA * pull.on_b.torque};
   on_points.wrench = blended(on_points.wrench, pull_W, pull.alpha);
-  const Vector3d arm = points.rigid.p_WC - map.rigid.p_WC;
-  on_map.wrench = {-on_points.wrench.force, -(on_points.wrench.torque + arm.cross(on_points.wrench.force))};
+  on_map.wrench = reaction(on_points.wrench, points, map);
   for (LinkSide* side : {&on_map, &on_points}) {  // the collision's part of what an implicit step is told
     side->stiffness *= 1 - pull.alpha;
     side->damping *= 1 - pull.alpha;
@@ -186,16 +185,10 @@ void Simulation::Implementation::find_exact_contacts(Link& link) {
 
 /// Bodies that touch each other are solved together; an island goes by the number of its first body.
 void Simulation::Implementation::join_islands() {
-  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].island = i;
-  for (const Link& link : links) {
-    if (!link.near || link.method != Hybrid::exact || link.exact->rows().rows().empty()) continue;
-    if (!bodies[link.first].solved || !bodies[link.second].solved) continue;
-    const auto [low, high] = std::minmax(bodies[link.first].island, bodies[link.second].island);
-    const std::size_t from = high;
-    const std::size_t to = low;
-    for (Body& body : bodies)
-      if (body.island == from) body.island = to;
-  }
+  join_bodies(bodies, links, &Body::island, [&](const Link& link) {
+    return link.near && link.method == Hybrid::exact && !link.exact->rows().rows().empty() &&
+           bodies[link.first].solved && bodies[link.second].solved;
+  });
 }
 
 void Simulation::Implementation::solve_island(std::size_t island) {

@@ -1,36 +1,21 @@
 // What contacts that a method changed may do within a step, and what all contacts have done at its end.
 #include <algorithm>
 
-#include "engine/simulation/world.hpp"
+#include "engine/simulation/groups.hpp"
 
 namespace verisim {
-namespace {
 
-/// The first body of the group that a body belongs to.
-std::size_t group_of(const std::vector<Body>& bodies, std::size_t i) {
-  while (bodies[i].group != i) i = bodies[i].group;
-  return i;
-}
-
-/// What a wrench on one body is to the other, both as they stood when it was found.
 Wrench reaction(const Wrench& wrench, const Body& on, const Body& other) {
   const Vector3d arm = on.p_WC_found - other.p_WC_found;
   return {-wrench.force, -(wrench.torque + arm.cross(wrench.force))};
 }
 
-}  // namespace
-
 /// Bodies that move and touch each other are one group, which goes by its first body. One that the exact response moves
 /// is alone: it has no share.
 void Simulation::Implementation::join_groups() {
-  const auto shares = [&](const Body& body) { return moves(body) && !body.solved; };
-  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].group = i;
-  for (const Link& link : links) {
-    if (!link.touches() || !shares(bodies[link.first]) || !shares(bodies[link.second])) continue;
-    const auto [low, high] = std::minmax({group_of(bodies, link.first), group_of(bodies, link.second)});
-    bodies[high].group = low;
-  }
-  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].group = bodies[bodies[i].group].group;  // low before high
+  const auto shares = [&](std::size_t body) { return moves(bodies[body]) && !bodies[body].solved; };
+  join_bodies(bodies, links, &Body::group,
+              [&](const Link& link) { return link.touches() && shares(link.first) && shares(link.second); });
 }
 
 /// The contacts of a group with a changed one give no more energy than all contacts were given (integrator.hpp).

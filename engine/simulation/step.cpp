@@ -157,8 +157,8 @@ void Simulation::Implementation::respond() {
     if (!link.touches()) continue;
     const LinkBody& first = bodies[link.first].link_body;
     const LinkBody& second = bodies[link.second].link_body;
-    // An implicit step takes the other body as standing still in its own step: of two that move, each would answer with
-    // another force. Only against what does not move may the stiffness go beyond the explicit bound.
+    // An implicit step takes the other body as going on as it did: of two that move, each would answer with another
+    // force. Only against what does not move may the stiffness go beyond the explicit bound.
     penalty.stabilize = !implicit || (!first.inverse_mass.isZero(0) && !second.inverse_mass.isZero(0));
     const bool restored = link.method == Hybrid::restore;
     if (restored && implicit && restore_normals(link)) {

@@ -87,6 +87,9 @@ struct Held {
   bool sampled = false;    ///< handle_before is valid
 };
 
+/// What a wrench on one body is to the other, both as they stood when their contacts were found.
+[[nodiscard]] Wrench reaction(const Wrench& wrench, const Body& on, const Body& other);
+
 struct Simulation::Implementation {
   SimulationParameters parameters;
   double dt;

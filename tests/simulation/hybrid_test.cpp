@@ -194,8 +194,10 @@ TEST(Hybrid, OfPreciseBodiesIsSwitchedToTheirVoxels) {
   Simulation simulation(standing_pin(Hybrid::exact), {});
   EXPECT_EQ(Frame(simulation).of_link<std::uint32_t>("contacts"), 0U) << "half a millimetre of clearance is no contact";
   EXPECT_EQ(simulation.cost().points_tested, 0U);
+  EXPECT_EQ(simulation.cost().bytes_touched, 0U);
   simulation.set_hybrid_enabled(kPin, false);
   EXPECT_TRUE(Frame(simulation).same_response(frame_of(standing_pin(Hybrid::off))));
+  EXPECT_GE(simulation.cost().bytes_touched, 3 * sizeof(float) * simulation.cost().points_tested);
 }
 
 TEST(Hybrid, MayBeginSwitchedOff) {
