@@ -87,7 +87,19 @@ TEST_P(EveryMethod, TellsOfALinkAndOfAFixedBodyWhatActedOnTheOneThatMoves) {
 
 /// The voxels answer before the precise surfaces do, and at once with a depth: they must not throw the pin out.
 TEST(SwitchingExactOff, GivesNoEnergy) {
-  Simulation simulation(scenes::brep_pin_in_hole(Hybrid::exact), {});
+  Scene scene;
+  scene.parameters.hybrid = Hybrid::exact;
+  scene.parameters.duration = 1;
+  scene.bodies = {scenes::body_of("block",
+                                  scenes::difference(scenes::solid(Solid::Kind::box, {0.2, 0.2, 0.1}),
+                                                     scenes::solid(Solid::Kind::cylinder, {0.03, 0.2})),
+                                  0.003),
+                  scenes::body_of("pin", *scenes::solid(Solid::Kind::cylinder, {0.028, 0.15}), 0.003)};
+  scene.bodies[0].fixed = true;
+  scene.bodies[1].X_WB.position = {0, 0, 0.08};
+  scene.devices = {scenes::hand_along({{0, 0, 0.08}, {0.005, 0.004, 0}}, 0.2)};
+  scene.grasps = {{0, 1}};
+  Simulation simulation(std::move(scene), {});
   double least = 0;
   bool on = true;
   std::uint64_t contacts = 0;
