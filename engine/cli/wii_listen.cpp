@@ -10,7 +10,7 @@
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/geometry/write_file.hpp"
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
 

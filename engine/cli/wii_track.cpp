@@ -3,7 +3,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/geometry/write_file.hpp"
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
 
 namespace verisim::cli {
 

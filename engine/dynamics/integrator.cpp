@@ -122,18 +122,17 @@ ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads
   return {quadratic + linear, quadratic, linear};
 }
 
-StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
+StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share) {
   const double energy_before = potential_at_start(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
   const Wrench damper = damper_of(loads);
-  const double share = loads.contact_share;
-  const Wrench contact{share * loads.contact.force, share * loads.contact.torque};
+  const Wrench contact{contact_share * loads.contact.force, contact_share * loads.contact.torque};
   const Vector3d force = loads.external.force + contact.force + spring.force + damper.force;
   const Vector3d torque = loads.external.torque + contact.torque + spring.torque + damper.torque;
   const Vector6d u1 = stacked(body.v_C, body.omega) + sped_up(body, body.inertia_inverse_W(), {force, torque}, dt);
   const Motion motion = advance(body, u1, dt);
   StepWork work = account(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
-  work.contact_end.share = share;
+  work.contact_end.share = contact_share;
   return work;
 }
 
@@ -246,14 +245,13 @@ ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, dou
           work_along(u0 + divided.free.free)};
 }
 
-StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
+StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share) {
   const ImplicitStep step = begin_implicit(body, loads, dt);
-  const double share = loads.contact_share;
-  if (!step.with_contact || share == 1) return end_implicit(body, loads, step, step.free, {}, dt);
+  if (!step.with_contact || contact_share == 1) return end_implicit(body, loads, step, step.free, {}, dt);
   const DividedStep divided = divide(body, loads, step, dt);
-  const ContactEnd end{share, stacked(body.v_C, body.omega), divided.with_all};
-  const Vector6d u1 = divided.free.free + share * (divided.with_all - divided.free.free);
-  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(share * divided.contact), dt);
+  const ContactEnd end{contact_share, stacked(body.v_C, body.omega), divided.with_all};
+  const Vector6d u1 = divided.free.free + contact_share * (divided.with_all - divided.free.free);
+  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(contact_share * divided.contact), dt);
   work.contact_end = end;
   return work;
 }

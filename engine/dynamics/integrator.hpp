@@ -39,7 +39,6 @@ struct Loads {
   Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
   Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
   Vector6d contact_drift = Vector6d::Zero();  ///< sum of K times the twist of the other body at C: a wall that moves
-  double contact_share = 1;                   ///< 0 to 1: so much of contact acts (share_within)
   const Coupling* coupling = nullptr;         ///< null: not held
   CouplingForce coupling_at_start;
   CouplingTarget target;
@@ -66,8 +65,9 @@ struct StepWork {
   ContactEnd contact_end;
 };
 
-[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
-[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
+/// `contact_share`: 0 to 1, so much of the contact acts (share_within).
+[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share = 1);
+[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share = 1);
 
 /// Work [J] on a body of a contact of which the share s acts: w(s) = quadratic s^2 + linear s, and w(1), whose rounding
 /// is that of the step itself.

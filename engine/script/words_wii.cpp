@@ -3,7 +3,7 @@
 
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
 
 namespace verisim::script {
 namespace {
