@@ -138,7 +138,7 @@ void add_wii_listen(CLI::App& wii_command, int& exit_code) {
       ->required();
   command->add_option("-o,--out", o->out, "Wii trace to write, .csv or .h5");
   command->add_option("--poses", o->poses, "CSV of a tracker's poses, as wii track writes it");
-  command->add_option("--tracker", o->tracker, "Which tracker")->check(CLI::IsMember(trackers_of_one_remote()));
+  command->add_option("--tracker", o->tracker, "Which tracker")->check(CLI::IsMember(trackers_of(1)));
   command->add_option("--leds", o->leds, "LEDs of the glasses, as in a trace: 'x y z; x y z'");
   command->add_option("--fov", o->fov, "Field of view of that remote, degrees")->expected(2);
   command->add_option("--rate", o->rate, "Nominal rate to write into the trace, 1/s")->check(CLI::PositiveNumber);

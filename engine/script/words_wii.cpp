@@ -40,11 +40,13 @@ void read_remote(lua_State* L, Fields& fields, HeadNode& head) {
   lua_pop(L, 1);
 }
 
-void check_tracker(lua_State* L, const std::string& tracker) {
-  const std::vector<std::string>& known = wii::tracker_names();
-  if (tracker == "stereo") raise(L, "WiiHead: tracker 'stereo' needs two remotes, but a WiiHead has one");
+const wii::TrackerEntry& tracker_of(lua_State* L, const std::string& tracker) {
+  const std::vector<std::string> known = wii::tracker_names();
   if (std::find(known.begin(), known.end(), tracker) == known.end())
     raise(L, "WiiHead: tracker '{}' is not known{}", tracker, suggestion(tracker, known));
+  const wii::TrackerEntry& entry = wii::find_tracker(tracker);
+  if (entry.remotes > 1) raise(L, "WiiHead: tracker '{}' needs two remotes, but a WiiHead has one", tracker);
+  return entry;
 }
 
 int wii_head(lua_State* L) {
@@ -58,9 +60,8 @@ int wii_head(lua_State* L) {
   for (const HeadPointer& other : state.heads)
     if (other->name == head->name) raise(L, "WiiHead: there is a WiiHead '{}' already; give each a name=", head->name);
   head->tracker = fields.text("tracker").value_or(head->tracker);
-  check_tracker(L, head->tracker);
+  head->virtual_remote.leds = tracker_of(L, head->tracker).leds;
   read_remote(L, fields, *head);
-  if (head->tracker == "three-led") head->virtual_remote.leds = wii::LedLayout::triangle();
   if (fields.push("leds")) {
     head->virtual_remote.leds = leds_at(L, lua_gettop(L));
     lua_pop(L, 1);
