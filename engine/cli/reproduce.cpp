@@ -37,7 +37,7 @@ std::string scenarios_folder() {
 }
 
 /// A run as `verisim run` makes it. Error(diverged, io, interrupted) if it did not come to its end.
-reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::RunRequest& request) {
+reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::RunRequest& request) {
   ScenarioOptions options;
   options.path = (fs::path(folder) / (request.scenario + ".lua")).string();
   options.sets = request.sets;
@@ -49,30 +49,9 @@ reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::R
       record_run(session, {.file = request.file, .paced = request.paced, .empty_block = request.empty_block});
   if (run.loop.end != LoopEnd::done)
     fail(static_cast<ErrorKind>(exit_code_of(run.loop.end)), "{}: {}", request.file,
-         run.loop.error.empty() ? run.summary.end : run.loop.error);
-  const Summary& s = run.summary;
-  reproduce::RunFigures figures{.run_file = s.run_file,
-                                .outcome = s.outcome,
-                                .frames = s.frames,
-                                .collision_frames = s.collision_frames,
-                                .overruns = s.overruns,
-                                .collisions = s.collisions,
-                                .cache_hits = s.cache_hits,
-                                .cache_misses = s.cache_misses,
-                                .null_misses = s.null_misses,
-                                .simulated_s = s.simulated_s,
-                                .wall_s = s.wall_s,
-                                .realtime_priority = s.realtime_priority,
-                                .frame_ns = std::move(run.loop.frame_ns),
-                                .collision_frame_ns = std::move(run.loop.collision_frame_ns),
-                                .measures = {},
-                                .block_overruns = std::move(run.loop.block_overruns),
-                                .empty_block_overruns = std::move(run.loop.empty_block_overruns),
-                                .force_max = s.force_max,
-                                .penetration_max = s.penetration_max,
-                                .state_hash = s.state_hash};
-  for (const Measure& m : s.measures) figures.measures.emplace_back(m.name, m.value);
-  return figures;
+         run.loop.error.empty() ? run.figures.end : run.loop.error);
+  return {run.figures, std::move(run.loop.frame_ns), std::move(run.loop.collision_frame_ns),
+          std::move(run.loop.block_overruns), std::move(run.loop.empty_block_overruns)};
 }
 
 ordered_json json_of(const Figure& figure) {

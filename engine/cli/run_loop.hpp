@@ -37,9 +37,8 @@ struct LoopResult {
 void add_timing_columns(Schema& schema);
 
 /// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may
-/// be null. `schema` is the simulation's, then the timing columns. The loop itself allocates nothing.
-[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema,
-                                  const LoopOptions& options);
+/// be null; its schema is the simulation's, then the timing columns. The loop itself allocates nothing.
+[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOptions& options);
 
 /// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
 void catch_interrupts();

@@ -27,7 +27,7 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
   RunRequest request{
       .scenario = "peg_in_hole", .file = file, .sets = {{"hybrid", "restore"}}, .paced = true, .empty_block = kBlock};
   if (workshop.quick) request.duration = 4;
-  const RunFigures run = workshop.run(request);
+  const TimedRun run = workshop.run(request);
   const std::vector<double> loaded = shares(run.block_overruns);
   const std::vector<double> empty = shares(run.empty_block_overruns);
   if (loaded.size() < 2 || loaded.size() != empty.size())
@@ -39,7 +39,7 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
   const Estimate difference = mean_of(more);
   const bool shows = difference.interval.first > 0;
   const auto slow = static_cast<double>(
-      std::count_if(run.frame_ns.begin(), run.frame_ns.end(), [](std::uint32_t ns) { return ns > kTooLong_ns; }));
+      std::count_if(run.frame_times_ns.begin(), run.frame_times_ns.end(), [](std::uint32_t ns) { return ns > kTooLong_ns; }));
   const auto frames = static_cast<double>(run.frames);
   return {
       {"R1",
@@ -86,7 +86,7 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
        100 * slow / frames,
        {},
        fmt::format("the slowest frame took {:.0f} us",
-                   *std::max_element(run.frame_ns.begin(), run.frame_ns.end()) / 1e3),
+                   *std::max_element(run.frame_times_ns.begin(), run.frame_times_ns.end()) / 1e3),
        {file}},
   };
 }

@@ -26,7 +26,7 @@ double quantile_ns(std::vector<std::uint32_t> times, double p) {
   return times[static_cast<std::size_t>(rank)];
 }
 
-RunFigures insert_pin(const Workshop& workshop, const std::string& hybrid) {
+TimedRun insert_pin(const Workshop& workshop, const std::string& hybrid) {
   return workshop.run({.scenario = "peg_in_hole",
                        .file = workshop.file("r5_" + hybrid + ".h5"),
                        .sets = {{"hybrid", hybrid}},
@@ -95,13 +95,13 @@ Row association_row(const Workshop& workshop) {
 }  // namespace
 
 std::vector<Row> r5_blending(const Workshop& workshop) {
-  const RunFigures blend = insert_pin(workshop, "blend");
-  const RunFigures restore = insert_pin(workshop, "restore");
+  const TimedRun blend = insert_pin(workshop, "blend");
+  const TimedRun restore = insert_pin(workshop, "restore");
   const std::vector<std::string> runs = {blend.run_file, restore.run_file};
-  const double slow = quantile_ns(blend.collision_frame_ns, 0.99);
-  const auto late = std::count_if(blend.collision_frame_ns.begin(), blend.collision_frame_ns.end(),
+  const double slow = quantile_ns(blend.collision_frame_times_ns, 0.99);
+  const auto late = std::count_if(blend.collision_frame_times_ns.begin(), blend.collision_frame_times_ns.end(),
                                   [](std::uint32_t ns) { return ns > kNsPerSecond / 500; });
-  const double cost = quantile_ns(blend.collision_frame_ns, 0.5) / quantile_ns(restore.collision_frame_ns, 0.5);
+  const double cost = quantile_ns(blend.collision_frame_times_ns, 0.5) / quantile_ns(restore.collision_frame_times_ns, 0.5);
   return {
       {"R5",
        "rate during insertion with force blending",

@@ -55,7 +55,7 @@ void ScriptState::finish() {
   name_devices(devices);
   bind_devices();
   for (const DevicePointer& device : devices) scene.devices.push_back(make_device(*device, scene.parameters.seed));
-  finish_heads();
+  finish_companions();
   for (const auto& grasp : grasps) {
     const DeviceNode& device = *grasp.first;
     scene.grasps.push_back(
@@ -73,13 +73,13 @@ void ScriptState::check_sets() const {
 void ScriptState::bind_devices() {
   std::vector<std::string> names;
   for (const auto& device : devices) names.push_back(innermost(*device).name);
-  for (const auto& head : heads) {
-    if (std::find(names.begin(), names.end(), head->name) != names.end())
-      fail(ErrorKind::input, "{}: there is a device '{}' already; give the WiiHead another name=", head->place,
-           head->name);
+  for (const auto& node : companions) {
+    if (std::find(names.begin(), names.end(), node->name) != names.end())
+      fail(ErrorKind::input, "{}: there is a device '{}' already; give the {} another name=", node->place, node->name,
+           node->word);
   }
   for (const auto& [wanted, source] : options.binds) {
-    if (bind_head(wanted, source)) continue;
+    if (bind_companion(wanted, source)) continue;
     const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
       fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted,
@@ -104,19 +104,25 @@ void ScriptState::bind_devices() {
   }
 }
 
-bool ScriptState::bind_head(const std::string& wanted, const std::string& source) {
-  const auto found = std::find_if(heads.begin(), heads.end(), [&](const auto& head) { return head->name == wanted; });
-  if (found == heads.end()) return false;
-  (*found)->trace = source;
+void ScriptState::add_companion(lua_State* L, std::shared_ptr<CompanionNode> node) {
+  for (const auto& other : companions)
+    if (other->name == node->name)
+      raise(L, "{}: there is a {} '{}' already; give each a name=", node->word, other->word, node->name);
+  companions.push_back(std::move(node));
+}
+
+bool ScriptState::bind_companion(const std::string& wanted, const std::string& source) {
+  const auto found =
+      std::find_if(companions.begin(), companions.end(), [&](const auto& node) { return node->name == wanted; });
+  if (found == companions.end()) return false;
+  (*found)->bind(source);
   (*found)->place = fmt::format("--bind {}={}", wanted, source);
   return true;
 }
 
-void ScriptState::finish_heads() {
-  for (const auto& node : heads) {
-    at_place(node->place, [&] { make_head(*node, inputs, scene.parameters.seed); });
-    scene.heads.push_back(node->head);
-  }
+void ScriptState::finish_companions() {
+  for (const auto& node : companions)
+    scene.companions.push_back(at_place(node->place, [&] { return node->make(inputs, scene.parameters.seed); }));
 }
 
 std::size_t ScriptState::device_index(const DeviceNode& wanted) const {

@@ -181,7 +181,7 @@ World make_world(const Scene& scene, unsigned threads, std::vector<Event>& event
               .companions = scene.companions,
               .clocks = Clocks(scene.parameters.timestep)};
   choose_integrator(scene, world, events);
-  for (const auto& device : scene.devices) world.hands.push_back({.device = device});
+  for (const auto& device : scene.devices) world.hands.emplace_back().device = device;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!may_meet_another(world, i)) continue;

@@ -1,7 +1,9 @@
 // `exact`: contacts between precisely known faces come from those faces, and one convex problem per island of bodies
 // answers them (stages/exact_response). Contacts at other faces stay the voxels'. A pair of which one body has no
 // precise surface is restored.
+#include "engine/simulation/hybrid_method.hpp"
 #include "engine/simulation/world.hpp"
+#include "engine/voxel/association.hpp"
 
 namespace verisim {
 namespace {

@@ -4,7 +4,7 @@ namespace verisim {
 namespace {
 
 /// One side of a link: what its voxels' contacts were at the start of the step, and how the step ended for the body.
-struct Side {
+struct SideOfLink {
   const LinkSide& start;
   const Body& body;
   const ContactEnd& end;
@@ -14,7 +14,7 @@ struct Side {
 
 /// What the voxels' contacts of a link did to one of its bodies. To one that stands still they did what the reaction
 /// is of what they did to the other; where both stand still, what they would have done.
-Wrench applied(const World& world, const Side& mine, const Side& theirs) {
+Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& theirs) {
   const auto on = [&](const LinkSide& side, const ContactEnd& end) {
     return acted(side.wrench, side.stiffness, side.damping, side.drift, end, world.dt);
   };
@@ -38,8 +38,8 @@ void Reactions::find(const World& world, const Contacts& contacts, const Respons
     Wrench on_first = reaction(on_second_[l], contacts.found_at(j), contacts.found_at(i));
     if (contacts.touches(l)) {
       const LinkSides& sides = response.sides(l);
-      const Side one{sides.first, first, motion.work(i).contact_end, contacts.found_at(i), exact.solved(i)};
-      const Side two{sides.second, second, motion.work(j).contact_end, contacts.found_at(j), exact.solved(j)};
+      const SideOfLink one{sides.first, first, motion.work(i).contact_end, contacts.found_at(i), exact.solved(i)};
+      const SideOfLink two{sides.second, second, motion.work(j).contact_end, contacts.found_at(j), exact.solved(j)};
       on_first += applied(world, one, two);
       on_second_[l] += applied(world, two, one);
     }
