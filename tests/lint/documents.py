@@ -19,7 +19,8 @@ def documents():
 
 @functools.cache
 def files():
-    return sorted(p.relative_to(ROOT).as_posix() for folder in FOLDERS for p in (ROOT / folder).rglob("*") if p.is_file())
+    found = [p for folder in FOLDERS for p in (ROOT / folder).rglob("*") if p.is_file()]
+    return sorted(p.relative_to(ROOT).as_posix() for p in found)
 
 
 @functools.cache

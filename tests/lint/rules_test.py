@@ -48,7 +48,8 @@ class Rules(unittest.TestCase):
         self.assertEqual(rules.permissions_nobody_uses(ENGINE), [])
         there = {"engine/base/a.hpp": '#include "engine/base/b.hpp"\n',
                  "engine/voxel/a.hpp": '#include "engine/voxel/b.hpp"\n'}
-        self.assertEqual(rules.permissions_nobody_uses(there), ["MAY_INCLUDE lets voxel include base; nothing there does"])
+        findings = rules.permissions_nobody_uses(there)
+        self.assertEqual(findings, ["MAY_INCLUDE lets voxel include base; nothing there does"])
 
     def test_an_include_says_what_it_includes(self):
         self.holds(rules.oddly_spelled_includes, ALL, planted=[
@@ -72,10 +73,13 @@ class Rules(unittest.TestCase):
     def test_a_library_is_included_only_at_its_home(self):
         self.holds(rules.libraries_away_from_home, ENGINE, planted=[
             ("engine/simulation/a.cpp", f"#include <{header}>\n")
-            for header in ("hdf5.h", "H5Cpp.h", "hdf5/serial/hdf5.h", "highfive/H5File.hpp", "lua.hpp", "lua.h", "lua5.1/lua.hpp",
-                           "sol/sol.hpp", "gp_Pnt.hxx", "opencascade/gp_Pnt.hxx", "assimp/scene.h", "CGAL/box_intersection_d.h",
+            for header in ("hdf5.h", "H5Cpp.h", "hdf5/serial/hdf5.h", "highfive/H5File.hpp", "lua.hpp", "lua.h",
+                           "lua5.1/lua.hpp",
+                           "sol/sol.hpp", "gp_Pnt.hxx", "opencascade/gp_Pnt.hxx", "assimp/scene.h",
+                           "CGAL/box_intersection_d.h",
                            "fcl/geometry/shape/box.h", "hwy/highway.h", "hwy/contrib/math/math-inl.h", "CLI/CLI.hpp",
-                           "nlohmann/json.hpp", "sleef.h", "xxhash.h", "openssl/sha.h", "openssl/rand.h", "netinet/in.h",
+                           "nlohmann/json.hpp", "sleef.h", "xxhash.h", "openssl/sha.h", "openssl/rand.h",
+                           "netinet/in.h",
                            "arpa/inet.h", "netdb.h", "sys/socket.h", "sys/un.h", "poll.h", "sys/epoll.h", "unistd.h",
                            "spawn.h", "pthread.h", "boost/asio.hpp", "unsupported/Eigen/MatrixFunctions", "time.h")
         ] + [
@@ -115,11 +119,14 @@ class Rules(unittest.TestCase):
             "const auto begin = Clock::now();\n",
             "const auto begin = Clock :: now ( );\n",
             "auto read = &high_resolution_clock::now;\n",
-            "#include <chrono>\n", "#include <ctime>\n", "#include <time.h>\n", "#include <sys/time.h>\n", "#include <omp.h>\n",
+            "#include <chrono>\n", "#include <ctime>\n", "#include <time.h>\n", "#include <sys/time.h>\n",
+            "#include <omp.h>\n",
             "clock_gettime(CLOCK_MONOTONIC, &t);\n", "auto f = clock_gettime;\n", "timespec_get(&t, TIME_UTC);\n",
-            "gettimeofday(&t, nullptr);\n", "time_t t = time(nullptr);\n", "time(&t);\n", "auto t = std::time(nullptr);\n",
+            "gettimeofday(&t, nullptr);\n", "time_t t = time(nullptr);\n", "time(&t);\n",
+            "auto t = std::time(nullptr);\n",
             "auto t = ::time(nullptr);\n", "auto t = clock();\n", "auto t = std::clock();\n", "localtime(&t);\n",
-            "gmtime_r(&t, &out);\n", "getrusage(RUSAGE_SELF, &u);\n", "double t = omp_get_wtime();\n", "auto t = __rdtsc();\n",
+            "gmtime_r(&t, &out);\n", "getrusage(RUSAGE_SELF, &u);\n", "double t = omp_get_wtime();\n",
+            "auto t = __rdtsc();\n",
             'asm volatile("" : "=a"(t)); __builtin_ia32_rdtscp(&t);\n', "__builtin_readcyclecounter();\n",
             "std::filesystem::last_write_time(p);\n",
             'const char* s = "//"; auto t = std::chrono::steady_clock::now();\n',
@@ -138,7 +145,8 @@ class Rules(unittest.TestCase):
             "std::linear_congruential_engine<unsigned, 1, 1, 1> g;\n", "#include <random>\n", "int r = rand();\n",
             "int r = std::rand();\n", "auto f = &std::rand;\n", "auto f = ::rand;\n", "srand(1);\n", "rand_r(&seed);\n",
             "long r = random();\n", "long r = ::random();\n", "double r = drand48();\n", "srand48(1);\n",
-            "getrandom(&r, 8, 0);\n", "RAND_bytes(b, 8);\n", "arc4random_uniform(3);\n", "__builtin_ia32_rdrand64_step(&r);\n",
+            "getrandom(&r, 8, 0);\n", "RAND_bytes(b, 8);\n", "arc4random_uniform(3);\n",
+            "__builtin_ia32_rdrand64_step(&r);\n",
             "std::shuffle(a, b, g);\n", "const Vector3d v = Vector3d::Random();\n", "v.setRandom();\n",
             'std::ifstream f("/dev/urandom");\n',
         ], harmless=["const RandomStream random(1, name);\n", "double random() override;\n", "stream.random();\n",
@@ -149,22 +157,41 @@ class Rules(unittest.TestCase):
             "double s = std::sin(x);\n", "double s = std :: sin (x);\n", "double s = std::\n  sin(x);\n",
             "double s = sin(x);\n", "double s = ::sin(x);\n", "double s = (sin)(x) + cos(x);\n", "float s = sinf(x);\n",
             "using std::sin;\n", "using namespace std;\n", "using namespace pinned;\n", "auto f = &std::exp;\n",
-            "std::transform(a, b, c, ::sqrt), d = ::exp(e);\n", "double p = std::pow(x, 2);\n", "float p = std::powf(x, 2);\n",
+            "std::transform(a, b, c, ::sqrt), d = ::exp(e);\n", "double p = std::pow(x, 2);\n",
+            "float p = std::powf(x, 2);\n",
             "double h = std::hypot(x, y, z);\n", "double h = hypot(x, y);\n", "double a = std::atan(x);\n",
-            "double a = std::acosh(x);\n", "double l = std::log10(x);\n", "double l = std::log1p(x);\n", "sincos(x, &s, &c);\n",
+            "double a = std::acosh(x);\n", "double l = std::log10(x);\n", "double l = std::log1p(x);\n",
+            "sincos(x, &s, &c);\n",
             "double e = std::erf(x);\n", "double g = std::tgamma(x);\n", "double b = std::cyl_bessel_j(0, x);\n",
-            "double b = std::beta(1, x);\n", "double s = __builtin_sin(x);\n", "#include <complex>\n", "#include <valarray>\n",
+            "double b = std::beta(1, x);\n", "double s = __builtin_sin(x);\n", "#include <complex>\n",
+            "#include <valarray>\n",
             "auto z = std::polar(1.0, x);\n", "v.array().sin();\n", "v.array().exp().sum();\n", "v.array().pow(3);\n",
             "Eigen::numext::sin(x);\n", "Eigen::AngleAxisd turn(x, axis);\n", "using Turn = AngleAxis<double>;\n",
             "Eigen::Rotation2Dd r(x);\n", "q.slerp(0.5, p);\n", "m.eulerAngles(0, 1, 2);\n", "a.angularDistance(b);\n",
             "solver.computeDirect(m);\n", "m.exp();\n", "#include <unsupported/Eigen/MatrixFunctions>\n",
-            ("engine/script/a.cpp", "double s = std::sin(x);\n"), ("engine/geometry/a.cpp", "double s = std::sin(x);\n"),
+            ("engine/script/a.cpp", "double s = std::sin(x);\n"),
+            ("engine/geometry/a.cpp", "double s = std::sin(x);\n"),
             ("engine/new_folder/a.cpp", "double s = std::sin(x);\n"),
             ("engine/voxel/limits.cpp", "int calls_nothing;\n"),
         ], harmless=[
             "double s = pinned::sin(x) + std::sqrt(y) + std::abs(z);\n", "const Quaterniond q = slerp(a, b, s);\n",
             "#include <cmath>\n", "// std::sin(x)\n", 'fail("sin(x) is 0");\n', "verisim_lua_sin(x);\n",
             ("engine/voxel/limits.cpp", "double l = std::log10(x);\n"),
+        ])
+
+    def test_every_function_of_a_header_is_called(self):
+        self.holds(rules.functions_nobody_calls, ENGINE, planted=[
+            ("engine/base/a.hpp", "void lonely();\n"),
+            ("engine/base/a.hpp", "struct A {\n  int lonely() const { return 1; }\n};\n"),
+            ("engine/base/a.hpp", "[[nodiscard]] std::vector<int> lonely(const A& a,\n    int b);\n"),
+            ("engine/base/a.hpp", "// lonely() does it\nconst A& lonely();\nvoid lonely(int a);\n"),
+            ("engine/base/a.hpp", "template <class T>\nT* lonely(T* t) {\n  return t;\n}\n"),
+            ("engine/base/a.hpp", "int body_count();\nint n = body_count();\n"),
+        ], harmless=[
+            ("engine/base/a.hpp", "int used();\nstruct A {\n  int n = used();\n};\n"),
+            ("engine/base/a.hpp", "int used();\n#define USE used()\n"),
+            ("engine/base/a.hpp", "int used() { return 1; }\nstatic_assert(used() == 1);\n"),
+            ("engine/base/a.hpp", "int body_count();\n"), ("engine/base/a.cpp", "void lonely() {}\n"),
         ])
 
     def test_no_file_is_longer_than_500_lines(self):
@@ -178,7 +205,8 @@ class Rules(unittest.TestCase):
         row = next(iter(rules.LONGER_THAN_A_SCREEN))
         path, name = row.split(": ")
         self.holds(rules.long_functions, ALL, planted=[
-            f"void f() {{\n{long}}}\n", f"namespace a {{\nclass B {{\n  int f() const noexcept {{\n{long}  }}\n}};\n}}\n",
+            f"void f() {{\n{long}}}\n",
+            f"namespace a {{\nclass B {{\n  int f() const noexcept {{\n{long}  }}\n}};\n}}\n",
             f"auto f(int a)\n    -> std::vector<int> {{\n{long}}}\n", f"B::B(int a) : a_{{a}}, b_(a) {{\n{long}}}\n",
             f"template <class T>\nrequires(sizeof(T) > 1)\nvoid f(T t) {{\n{long}}}\n", f"TEST(A, B) {{\n{long}}}\n",
             f"bool operator==(const A& a, const A& b) {{\n{long}}}\n", f"const auto f = [](int a) {{\n{long}}};\n",
@@ -194,7 +222,8 @@ class Rules(unittest.TestCase):
         self.holds(documents.names_of_nothing, documents.documents(), planted=[
             ("README.md", "see `engine/nothing.hpp`"), ("README.md", "see `engine/base/pose.hpp engine/nothing.hpp`"),
             ("README.md", "see `engine/nothing`"), ("README.md", "see `engine/script/nothing_*.cpp`"),
-            ("README.md", "see `nothing.hpp`"), ("README.md", "see `nothing_test`"), ("README.md", "see `reports/nothing.md`,"),
+            ("README.md", "see `nothing.hpp`"), ("README.md", "see `nothing_test`"),
+            ("README.md", "see `reports/nothing.md`,"),
             ("engine/voxel/README.md", "see `coupling.hpp`"), ("engine/base/README.md", "its test `nothing_test`"),
             ("engine/base/README.md", "```\n`\n```\nsee `nothing.hpp`"),
         ], harmless=[("README.md", "see `engine/base/pose.hpp`, `engine/script/words_*.cpp` and `rules_test`"),
@@ -208,11 +237,13 @@ class Rules(unittest.TestCase):
             ("ARCHITECTURE.md", table + "| the order | `engine/base/pose.hpp` | `Simulation::step` |\n"),
             ("ARCHITECTURE.md", table + "| a scene | `engine/simulation/scene.hpp` | `Scene`, `SceneOfTheCrime` |\n"),
             ("ARCHITECTURE.md", table + "| flags | `cmake/flags.cmake` | `verisim_core_variants` |\n"),
-        ], harmless=[("ARCHITECTURE.md", table + "| a scene | `engine/simulation/scene.hpp` | `Scene`: plain data |\n")])
+        ], harmless=[
+            ("ARCHITECTURE.md", table + "| a scene | `engine/simulation/scene.hpp` | `Scene`: plain data |\n")])
 
     def test_the_documents_use_only_words_of_the_code(self):
         self.holds(documents.words_of_nothing, documents.documents(), planted=[
-            ("README.md", "`Simulation::tread`"), ("README.md", "`nothing_of_that_name`"), ("README.md", "`/cost/nothings`"),
+            ("README.md", "`Simulation::tread`"), ("README.md", "`nothing_of_that_name`"),
+            ("README.md", "`/cost/nothings`"),
             ("README.md", "`body:setNothing`"),
         ], harmless=[("README.md", "`/cost/lookups`, `body:setHybridEnabled`, `MAY_INCLUDE`")])
 
@@ -231,7 +262,7 @@ class SourceText(unittest.TestCase):
 
     def test_functions_have_names_and_lengths(self):
         text = ("namespace a {\nstruct B : C {\n  B() : x{1}, y(2) {\n    f();\n  }\n  int x = {};\n};\n"
-                "int B::f(\n    int z) {\n  if (z) { return 1; }\n  return 2;\n}\nint t[] = {1,\n2};\n}  // namespace a\n")
+                "int B::f(\n    int z) {\n  if (z) { return 1; }\n  return 2;\n}\nint t[] = {1,\n2};\n}\n")
         self.assertEqual(functions(text), [("B", 3), ("B::f", 5)])
 
 

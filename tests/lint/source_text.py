@@ -58,30 +58,47 @@ CONTAINER = re.compile(r"\b(namespace|class|struct|union|enum)\b[^()=]*$|^\s*ext
 NAME_OF_FUNCTION = re.compile(r"([\w:~]+|operator\W+|\[[^\[\]]*\])\s*\(")  # a function, an operator, a lambda
 
 
-def functions(text):
-    """Name and number of lines of each function with a body, from its signature's first line to its last brace.
+def bodies(code):
+    """Where functions with a body stand: begin of the signature, of the body, and the end.
 
     Reads braces, not C++: what opens at the outermost level that is no namespace, type or initializer is a function.
     """
-    code = re.sub(r"^[ \t]*#.*$", "", code_of(text), flags=re.MULTILINE)
-    found, depth, inside, begin = [], 0, None, 0  # inside: the depth of the function that is open
+    depth, inside, begin = 0, None, 0  # inside: the depth of the function that is open, and where its body begins
     for brace in re.finditer(r"[{};]", code):
         after = brace.end()
         head = code[begin:brace.start()]
         if brace[0] == "{":
             depth += 1
             if inside is None and not CONTAINER.search(re.sub(r"alignas\s*\([^()]*\)", "", head)):
-                inside, signature = depth, head.strip()
+                inside, body = depth, brace.start()
         elif brace[0] == "}":
             depth -= 1
             if inside is not None and depth < inside:
                 inside = None
                 if code[after:].lstrip()[:1] in (",", "{"):  # a member's initializer: the body is still to come
                     continue
-                name = NAME_OF_FUNCTION.search(signature)
-                if name and not signature.endswith("="):
-                    first = begin + len(code[begin:]) - len(code[begin:].lstrip())
-                    found.append((name[1], line_of(code, after) - line_of(code, first) + 1))
+                if NAME_OF_FUNCTION.search(code[begin:body]) and not code[begin:body].rstrip().endswith("="):
+                    yield begin + len(code[begin:]) - len(code[begin:].lstrip()), body, after
         if inside is None:
             begin = after
-    return found
+
+
+def without_directives(text):
+    """The code of `text` with the same lines, each of the preprocessor's blank."""
+    directive = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*", re.MULTILINE)
+    return code_of(directive.sub(lambda match: "\n" * match[0].count("\n"), text))
+
+
+def functions(text):
+    """Name and number of lines of each function with a body, from its signature's first line to its last brace."""
+    code = without_directives(text)
+    return [(NAME_OF_FUNCTION.search(code[first:body])[1], line_of(code, end) - line_of(code, first) + 1)
+            for first, body, end in bodies(code)]
+
+
+def declarations(text):
+    """The names of the functions that a text declares or defines, as often as it does."""
+    code = without_directives(text)
+    for _, body, end in reversed(list(bodies(code))):
+        code = code[:body] + ";" + code[end:]
+    return re.findall(r"(?:[\w>\]]\s+|[&*]\s*|(?<!std)::)(?<!return )(\w+)\s*\(", code)
