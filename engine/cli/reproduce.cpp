@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,6 +6,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/recorded_run.hpp"
+#include "engine/cli/stop_watch.hpp"
 #include "engine/reproduce/reproductions.hpp"
 
 namespace verisim::cli {
@@ -89,7 +89,6 @@ bool is_wanted(const Options& o, const Reproduction& r) {
 }
 
 void run_reproduce(const Options& o) {
-  using Clock = std::chrono::steady_clock;
   reproduce::Workshop workshop{o.quick, o.out, {}};
   const std::string scenarios = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
   workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request); };
@@ -98,9 +97,9 @@ void run_reproduce(const Options& o) {
   for (const Reproduction& r : reproduce::reproductions()) {
     if (!is_wanted(o, r)) continue;
     if (!o.quiet) std::fprintf(stderr, "%-4s %-40s ", r.id, r.what);
-    const auto begin = Clock::now();
+    const StopWatch watch;
     for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
-    if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", std::chrono::duration<double>(Clock::now() - begin).count());
+    if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", watch.seconds());
   }
   std::printf("%s%s", o.json ? to_json(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
 }

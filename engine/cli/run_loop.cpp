@@ -176,12 +176,4 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
   return result;
 }
 
-std::uint32_t quantile(std::vector<std::uint32_t>& times, double p) {
-  if (times.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(std::ceil(p * static_cast<double>(times.size())));
-  const std::size_t index = std::min(times.size() - 1, rank == 0 ? 0 : rank - 1);
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(index), times.end());
-  return times[index];
-}
-
 }  // namespace verisim::cli

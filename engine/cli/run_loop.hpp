@@ -45,7 +45,4 @@ void catch_interrupts();
 /// Whether one has asked since. For other loops than run_loop.
 [[nodiscard]] bool was_interrupted();
 
-/// The p-quantile (0 to 1) of some times, nearest rank; 0 of none. `times` is reordered.
-[[nodiscard]] std::uint32_t quantile(std::vector<std::uint32_t>& times, double p);
-
 }  // namespace verisim::cli

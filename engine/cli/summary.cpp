@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/hash.hpp"
+#include "engine/base/quantile.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -11,9 +12,8 @@ namespace {
 using nlohmann::ordered_json;
 
 RunFigures::Times times_of(std::vector<std::uint32_t>& ns) {
-  RunFigures::Times times{quantile(ns, 0.5), quantile(ns, 0.99), 0};
-  times.max = quantile(ns, 1);
-  return times;
+  if (ns.empty()) return {};
+  return {quantile(ns, 0.5), quantile(ns, 0.99), quantile(ns, 1)};
 }
 
 const char* name_of(LoopEnd end) {

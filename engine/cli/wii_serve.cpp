@@ -7,6 +7,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/head_server.hpp"
 #include "engine/cli/run_loop.hpp"
+#include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/wii/validate.hpp"

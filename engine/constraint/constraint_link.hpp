@@ -75,7 +75,6 @@ class ConstraintLink {
   /// What the contacts looked up in this frame stand under, in the order of first meeting. Valid until begin_frame.
   [[nodiscard]] std::span<const Engaged> engaged() const { return engaged_; }
   [[nodiscard]] const MemoCounts& counts() const { return memo_.counts(); }
-  [[nodiscard]] const ConstraintMemo& memo() const { return memo_; }
 
  private:
   /// Pose-dependent state of one constraint; of this frame if the stamp is.

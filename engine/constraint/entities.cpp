@@ -11,7 +11,6 @@ namespace verisim {
 namespace {
 
 constexpr std::size_t kSetsMax = 65536;  ///< that FeatureSetId can number
-constexpr double kDeclaredHalf = 0.5;    ///< m to each side of a plane or line of which nothing else is known
 
 using Range = std::array<double, 2>;
 
@@ -123,25 +122,6 @@ Entity entity_of(const Face& face) {
 Entity entity_of(const Edge& edge, std::span<const Face> faces) {
   return std::visit([&](const auto& curve) { return bounded(curve, edge.t_range, role_beside(edge, faces)); },
                     edge.curve);
-}
-
-Entity entity_declared(const Surface& surface) {
-  Face face;
-  face.surface = surface;
-  face.u_range = face.v_range = {-kDeclaredHalf, kDeclaredHalf};
-  if (const auto* cylinder = std::get_if<Cylinder>(&surface)) {
-    face.v_range = {-2 * cylinder->radius, 2 * cylinder->radius};
-  }
-  if (const auto* cone = std::get_if<Cone>(&surface)) face.v_range = {0, 2 * cone->radius};
-  return entity_of(face);
-}
-
-Entity entity_declared(const Curve& curve) {
-  Edge edge;
-  edge.curve = curve;
-  edge.t_range = {0, 2 * pinned::kPi};
-  if (std::holds_alternative<Line>(curve)) edge.t_range = {-kDeclaredHalf, kDeclaredHalf};
-  return entity_of(edge, {});
 }
 
 std::vector<Entity> EntitySets::entities_of(std::span<const Face> faces, std::span<const Edge> edges) {

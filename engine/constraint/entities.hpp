@@ -38,11 +38,6 @@ using Entity =
 [[nodiscard]] Entity entity_of(const Face& face);
 [[nodiscard]] Entity entity_of(const Edge& edge, std::span<const Face> faces);
 
-/// An entity declared by hand, of which no more is known than the shape (`addFeatureSet` of a scenario): a round face
-/// is taken to reach one diameter along its axis, a plane and a line half a metre to each side.
-[[nodiscard]] Entity entity_declared(const Surface& surface);
-[[nodiscard]] Entity entity_declared(const Curve& curve);
-
 /// Number of a set of entities of one part; 0 is the empty set.
 using FeatureSetId = std::uint16_t;
 

@@ -70,7 +70,6 @@ class ConstraintMemo {
 
   [[nodiscard]] std::size_t candidates_max() const { return candidates_.size(); }  ///< numbers that may occur
   [[nodiscard]] std::size_t constraints_max() const { return constraints_.size(); }
-  [[nodiscard]] std::size_t constraints_known() const { return constraints_known_; }
 
  private:
   struct Stretch {

@@ -48,18 +48,4 @@ ActiveConstraint activate(const Constraint& c, const Pose& X_AB, double alpha) {
   return active;
 }
 
-Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3d& x, const Vector3d& f, double alpha) {
-  ActiveConstraint axis;
-  axis.kind = ConstraintKind::cylindrical;
-  axis.field = NormalField::about_line;
-  axis.alpha = alpha;
-  axis.point = c;
-  axis.direction = v;
-  return restore(axis, x, f);
-}
-
-Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha) {
-  return restore_along(n, f, alpha, /*pushes_only=*/true);
-}
-
 }  // namespace verisim

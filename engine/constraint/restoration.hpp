@@ -83,10 +83,4 @@ struct ActiveConstraint {
   return restore_along(normal_at(c, x), f, c.alpha, c.pushes_only);
 }
 
-/// The dissertation's two, by name. Axis through `c` along the unit vector `v`.
-[[nodiscard]] Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3d& x, const Vector3d& f,
-                                           double alpha);
-/// `n`: unit normal, from the body that feels f towards the other.
-[[nodiscard]] Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha);
-
 }  // namespace verisim

@@ -90,37 +90,4 @@ void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& 
   cost.clusters += b.clusters.size();
 }
 
-void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
-  check(a, b, contacts);
-  contacts.size = 0;
-  const QueryFrame f = make_query_frame(a, b, X_AB);
-  for (const Pointshell::Cluster& cluster : b.clusters) {
-    ClusterFrame c;
-    place(cluster, center_of(f, cluster), c);
-    for (std::uint32_t i = c.begin; i < c.end; ++i) {
-      const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);
-      if (p.layer > 0) continue;
-      ++cost.candidates;
-      float n[3];
-      for (int r = 0; r < 3; ++r) {
-        n[r] = f.rotation[3 * r] * b.nx[i] + f.rotation[3 * r + 1] * b.ny[i] + f.rotation[3 * r + 2] * b.nz[i];
-      }
-      const float depth = depth_of(f, p, n[0], n[1], n[2]);
-      if (!(depth > 0)) continue;
-      const std::uint32_t k = contacts.size++;
-      contacts.point[k] = i;
-      contacts.slot[k] = p.slot;
-      contacts.x[k] = coordinate(f, c.base[0], p.local[0]);
-      contacts.y[k] = coordinate(f, c.base[1], p.local[1]);
-      contacts.z[k] = coordinate(f, c.base[2], p.local[2]);
-      contacts.nx[k] = n[0];
-      contacts.ny[k] = n[1];
-      contacts.nz[k] = n[2];
-      contacts.depth[k] = depth;
-    }
-  }
-  cost.clusters += b.clusters.size();
-  cost.points += b.size();
-}
-
 }  // namespace verisim

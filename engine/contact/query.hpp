@@ -75,10 +75,6 @@ struct QueryCost {
 /// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
 
-/// The same, written plainly (a loop over all points, nothing culled, no SIMD): what the fast one must equal bit for
-/// bit. Costs differ: it counts every point.
-void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
-
 /// Names of the SIMD targets compiled in and supported by this CPU, best first ("AVX3", "AVX2", "SSE4", "SSSE3" …);
 /// the last is always "scalar": the same code in portable C++ (Highway's SCALAR or EMU128).
 [[nodiscard]] std::vector<std::string> simd_targets();

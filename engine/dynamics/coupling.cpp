@@ -55,8 +55,4 @@ double coupling_energy(const Coupling& coupling, const CouplingForce& force) {
   return 0.5 * coupling.stiffness * force.d.squaredNorm() + 0.5 * coupling.angular_stiffness * force.e.squaredNorm();
 }
 
-double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
-  return coupling_energy(coupling, coupling_force(coupling, body, target));
-}
-
 }  // namespace verisim

@@ -69,6 +69,5 @@ struct CouplingForce {
 
 /// Energy stored in the springs [J].
 [[nodiscard]] double coupling_energy(const Coupling& coupling, const CouplingForce& force);
-[[nodiscard]] double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target);
 
 }  // namespace verisim

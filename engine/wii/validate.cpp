@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
+#include "engine/base/quantile.hpp"
 #include "engine/wii/validation_figures.hpp"
 
 namespace verisim::wii {
@@ -108,9 +109,7 @@ double median_update_ns(Tracker& tracker, const std::vector<Sensed>& all) {
       (void)tracker.update(all[j].report.t, all[j].report.channels, all[j].remote);
     blocks.push_back(std::chrono::duration<double, std::nano>(Clock::now() - begin).count() / kTimedBlock);
   }
-  if (blocks.empty()) return 0;
-  std::nth_element(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2), blocks.end());
-  return blocks[blocks.size() / 2];
+  return blocks.empty() ? 0 : quantile(blocks, 0.5);
 }
 
 }  // namespace
