@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/geometry/entity.hpp"
 
 namespace verisim {
@@ -65,7 +66,11 @@ class EntitySets {
 
   [[nodiscard]] std::size_t size() const { return first_.size() - 1; }  ///< sets, the empty one included
   [[nodiscard]] const std::vector<Entity>& entities() const { return entities_; }
-  [[nodiscard]] const Entity& entity(std::uint32_t number) const { return entities_[number]; }
+  /// @pre number < entities().size()
+  [[nodiscard]] const Entity& entity(std::uint32_t number) const {
+    VERISIM_ASSERT(number < entities_.size());
+    return entities_[number];
+  }
   /// Entity numbers of a set; an id beyond the last is empty.
   [[nodiscard]] std::span<const std::uint32_t> set(FeatureSetId id) const {
     if (id >= size()) return {};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/constraint/recognition.hpp"
@@ -167,6 +168,8 @@ const std::array<const char*, 6>& recognizer_names() {
 }
 
 RecognitionTable measure_recognition_table(int rounds, double ms_per_row) {
+  VERISIM_ASSERT(rounds > 0);
+  VERISIM_ASSERT(is_positive(ms_per_row));
   static constexpr auto kPasses = passes(std::make_index_sequence<kMasks>());
   const Set holes = one_of_each(true);
   const Set pins = one_of_each(false);

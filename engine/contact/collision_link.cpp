@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -40,6 +43,8 @@ Vector6d twist_at(const LinkBody& body, const Vector3d& p_W) {
 
 CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
     : first_is_map_(second.shell.size() <= first.shell.size()) {
+  VERISIM_ASSERT(is_positive(first.voxmap.voxel_size));
+  VERISIM_ASSERT(is_positive(second.voxmap.voxel_size));
   map_ = first_is_map_ ? &first.voxmap : &second.voxmap;
   shell_ = first_is_map_ ? &second.shell : &first.shell;
   contacts_ = ContactList(shell_->size());
@@ -69,6 +74,11 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
 
 void CollisionLink::stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
                             double dt) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(is_not_negative(parameters.stiffness_max));
+  VERISIM_ASSERT(is_not_negative(parameters.damping_ratio));
+  VERISIM_ASSERT(is_symmetric(first.inverse_mass));
+  VERISIM_ASSERT(is_symmetric(second.inverse_mass));
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
   const Matrix3d R_MW = map.X_WB.rotation.toRotationMatrix().transpose();

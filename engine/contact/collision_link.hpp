@@ -45,15 +45,19 @@ struct LinkSides {
 
 class CollisionLink {
  public:
+  /// Both must outlive the link. @pre both are voxelized
   CollisionLink(const VoxelBody& first, const VoxelBody& second);
   /// From now on contacts are found by triangle against triangle, at most kMeshContactsMax.
   void find_by_triangles(const MeshTree& first, const MeshTree& second);
   static constexpr std::size_t kMeshContactsMax = 16384;
 
-  /// Detection: fills the contact list. No allocation (but by FCL).
+  /// Detection: fills the contact list. No allocation (but by FCL). @pre rotations are unit, if the poses are finite
   void query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost);
   [[nodiscard]] ContactList& contacts() { return contacts_; }
   [[nodiscard]] const ContactList& contacts() const { return contacts_; }
+
+  // Of both parts: @pre dt is finite and above 0; stiffness_max and damping_ratio are finite and not negative; inverse
+  // masses are symmetric. Where there is no contact, nothing is asked.
 
   /// Response, part one: stiffness by the stability rule and a penalty force for every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);

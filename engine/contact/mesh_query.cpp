@@ -8,6 +8,9 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 struct MeshTree::Implementation {
@@ -15,8 +18,10 @@ struct MeshTree::Implementation {
 };
 
 MeshTree::MeshTree(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>()) {
+  for (const Vector3d& v : mesh.vertices) VERISIM_ASSERT(is_finite(v));
   std::vector<fcl::Triangle> triangles;
   for (const auto& [a, b, c] : mesh.triangles) {
+    VERISIM_ASSERT(std::max({a, b, c}) < mesh.vertices.size());
     const Vector3d ab = mesh.vertices[b] - mesh.vertices[a];
     const Vector3d ac = mesh.vertices[c] - mesh.vertices[a];
     // A triangle that is thinner than rounding has no plane.
@@ -78,6 +83,8 @@ void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3
            QueryCost& cost) {
   contacts.size = 0;
   if (!X_AB.position.allFinite() || !X_AB.rotation.coeffs().allFinite()) return;
+  VERISIM_ASSERT(is_unit(X_AB.rotation));
+  VERISIM_ASSERT(is_finite(origin_A));
   fcl::Transform3d placed = fcl::Transform3d::Identity();
   placed.linear() = X_AB.rotation.toRotationMatrix();
   placed.translation() = X_AB.position;

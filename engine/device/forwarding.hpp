@@ -6,13 +6,17 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/error.hpp"
 #include "engine/device/device.hpp"
 
 namespace verisim {
 
 class ForwardingDevice : public Device {
  public:
-  explicit ForwardingDevice(std::shared_ptr<Device> inner) : inner_(std::move(inner)) {}
+  /// @pre inner is not null
+  explicit ForwardingDevice(std::shared_ptr<Device> inner) : inner_(std::move(inner)) {
+    VERISIM_ASSERT(inner_ != nullptr);
+  }
   [[nodiscard]] const std::string& name() const override { return inner_->name(); }
   void sample(std::uint64_t frame, double t, double dt) override { inner_->sample(frame, t, dt); }
   [[nodiscard]] const DeviceReading& reading() const override { return inner_->reading(); }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim {
@@ -87,8 +88,8 @@ std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shar
   if (!(d.force_max >= 0) || !(d.torque_max >= 0))
     fail(ErrorKind::input, "device '{}': its limits of {} N and {} N m must not be negative", d.name, d.force_max,
          d.torque_max);
-  if (!d.home.position.allFinite() || !d.home.rotation.coeffs().allFinite())
-    fail(ErrorKind::input, "device '{}': its home pose is not finite", d.name);
+  if (!is_placement(d.home))
+    fail(ErrorKind::input, "device '{}': its home pose is not finite with a unit quaternion", d.name);
   return std::make_shared<HardwareDevice>(std::move(description), std::move(source));
 }
 
