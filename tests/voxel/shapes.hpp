@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/mesh.hpp"
@@ -48,6 +49,25 @@ TriangleMesh mapped(TriangleMesh mesh, const Map& map) {
 inline std::array<double, 2> on_circle(int i, int facets) {
   const double angle = 2 * std::numbers::pi * i / facets;
   return {pinned::cos(angle), pinned::sin(angle)};
+}
+
+/// A closed profile of (distance from z, z) turned about z; counter-clockwise around the material, and nowhere on z.
+inline TriangleMesh turned(const std::vector<std::array<double, 2>>& profile, int facets) {
+  TriangleMesh mesh;
+  const auto n = static_cast<std::uint32_t>(profile.size());
+  const auto around = static_cast<std::uint32_t>(facets);
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const auto [c, s] = on_circle(static_cast<int>(k), facets);
+    for (const auto& [rho, z] : profile) mesh.vertices.emplace_back(rho * c, rho * s, z);
+  }
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const std::uint32_t here = k * n, there = (k + 1) % around * n;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t j = (i + 1) % n;
+      add_quad(mesh, {here + i, there + i, there + j, here + j});
+    }
+  }
+  return mesh;
 }
 
 /// A prism of n facets inscribed in the cylinder of the given radius about z, from z = 0 to `height`.
