@@ -11,7 +11,7 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 constexpr double kParallel = 1 - 1e-8;   // cosine
 constexpr std::size_t kSaysACircle = 4;  // points: three lie on a circle always
 constexpr double kSlack = 3;             // tolerances: a curve of two surfaces is off where both are

@@ -16,7 +16,7 @@ constexpr std::size_t kEnough = 5;
 constexpr std::array<std::size_t, 5> kFewest = {3, 8, 8, 9, 14};
 constexpr double kEqualStep = 0.02;  // relative
 constexpr double kBulge = 50;        // tolerances off the nearest plane: what is flatter fits anything
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 
 /// Places on a circle that are no nearer to each other than `apart`, ascending, the widest gap before the first.
 std::vector<double> places(std::vector<double> angles, double apart) {

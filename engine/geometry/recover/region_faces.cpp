@@ -10,7 +10,7 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 using Range = std::array<double, 2>;
 
 /// The vertices of a region, each once.
