@@ -18,7 +18,7 @@ using reproduce::Figure;
 using reproduce::Reproduction;
 using reproduce::Row;
 
-struct Options {
+struct ReproduceOptions {
   std::string out = "runs/reproduce";
   std::string scenarios;
   std::vector<std::string> only;
@@ -84,11 +84,11 @@ std::string to_json(const std::vector<Row>& rows) {
   return j.dump();
 }
 
-bool is_wanted(const Options& o, const Reproduction& r) {
+bool is_wanted(const ReproduceOptions& o, const Reproduction& r) {
   return o.only.empty() || std::find(o.only.begin(), o.only.end(), r.id) != o.only.end();
 }
 
-void run_reproduce(const Options& o) {
+void run_reproduce(const ReproduceOptions& o) {
   reproduce::Workshop workshop{o.quick, o.out, {}};
   const std::string scenarios = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
   workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request); };
@@ -114,7 +114,7 @@ std::vector<std::string> ids() {
 
 void add_reproduce(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("reproduce", "The dissertation's figures, measured again side by side");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReproduceOptions>();
   command->add_option("-o,--out", o->out, "Folder for run files and tables")->capture_default_str();
   command->add_option("--only", o->only, "Only these (repeatable)")->take_all()->check(CLI::IsMember(ids()));
   command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");

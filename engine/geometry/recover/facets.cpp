@@ -23,13 +23,13 @@ void measure(const CanonicalMesh& mesh, Facet& facet) {
 }
 
 /// One piece of a facet's border.
-struct Piece {
+struct BorderPiece {
   std::uint32_t facet;
   Vector3d from, to;
 };
 
-std::vector<Piece> border_of(const CanonicalMesh& mesh, const Facets& facets, std::uint32_t number) {
-  std::vector<Piece> pieces;
+std::vector<BorderPiece> border_of(const CanonicalMesh& mesh, const Facets& facets, std::uint32_t number) {
+  std::vector<BorderPiece> pieces;
   for (const std::uint32_t t : facets.all[number].triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t beside = mesh.neighbors[t][i];
@@ -37,15 +37,15 @@ std::vector<Piece> border_of(const CanonicalMesh& mesh, const Facets& facets, st
       if (facet != number) pieces.push_back({facet, mesh.corner(t, i), mesh.corner(t, (i + 1) % 3)});
     }
   }
-  std::ranges::stable_sort(pieces, {}, &Piece::facet);
+  std::ranges::stable_sort(pieces, {}, &BorderPiece::facet);
   return pieces;
 }
 
-std::vector<FacetSide> sides_of(const std::vector<Piece>& pieces, const Facets& facets, std::uint32_t number,
+std::vector<FacetSide> sides_of(const std::vector<BorderPiece>& pieces, const Facets& facets, std::uint32_t number,
                                 double cos_smooth) {
   std::vector<FacetSide> sides;
   double longest = 0;
-  for (const Piece& piece : pieces) {
+  for (const BorderPiece& piece : pieces) {
     const Vector3d way = piece.to - piece.from;
     const double length = way.norm();
     if (sides.empty() || sides.back().facet != piece.facet) {

@@ -12,17 +12,17 @@ namespace verisim::recover {
 namespace {
 
 /// A side of the mesh between two regions; the second is kNone where the mesh is open.
-struct Piece {
+struct EdgePiece {
   std::array<std::uint32_t, 2> vertices;
   std::array<std::uint32_t, 2> regions;
 };
 
-std::vector<Piece> pieces_of(const CanonicalMesh& mesh, const std::vector<Region>& regions) {
+std::vector<EdgePiece> pieces_of(const CanonicalMesh& mesh, const std::vector<Region>& regions) {
   std::vector<std::uint32_t> region_of(mesh.triangles.size(), kNone);
   for (std::uint32_t r = 0; r < regions.size(); ++r) {
     for (const std::uint32_t t : regions[r].triangles) region_of[t] = r;
   }
-  std::vector<Piece> pieces;
+  std::vector<EdgePiece> pieces;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t beside = mesh.neighbors[t][i];
@@ -33,14 +33,14 @@ std::vector<Piece> pieces_of(const CanonicalMesh& mesh, const std::vector<Region
       pieces.push_back({{from, to}, {low, high}});
     }
   }
-  std::ranges::sort(pieces, {}, &Piece::vertices);
+  std::ranges::sort(pieces, {}, &EdgePiece::vertices);
   return pieces;
 }
 
 /// Pieces at each vertex.
 class Chains {
  public:
-  explicit Chains(const std::vector<Piece>& pieces) : pieces_(pieces), used_(pieces.size(), false) {
+  explicit Chains(const std::vector<EdgePiece>& pieces) : pieces_(pieces), used_(pieces.size(), false) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       for (const std::uint32_t v : pieces[i].vertices) at_[v].push_back(i);
     }
@@ -79,7 +79,7 @@ class Chains {
     return chain;
   }
 
-  const std::vector<Piece>& pieces_;
+  const std::vector<EdgePiece>& pieces_;
   std::vector<bool> used_;
   std::map<std::uint32_t, std::vector<std::size_t>> at_;
 };
@@ -87,7 +87,7 @@ class Chains {
 }  // namespace
 
 std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Region>& regions, double tolerance) {
-  const std::vector<Piece> pieces = pieces_of(mesh, regions);
+  const std::vector<EdgePiece> pieces = pieces_of(mesh, regions);
   std::vector<Edge> edges;
   Chains(pieces).for_each([&](const std::vector<std::uint32_t>& chain, const std::array<std::uint32_t, 2>& between) {
     Edge edge;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<std::size_t, 4> kAround = {2, 3, 6, 12};  // steps
 constexpr int kSteps = 4;                                      // facets of a row to each side
-constexpr double kParallel = 0.7;                              // cosine
+constexpr double kSideParallel = 0.7;                          // cosine
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::vector<Surroundings::Row> Surroundings::rows(std::uint32_t facet) const {
   for (const bool across : {false, true}) {
     Row row = {facet};
     for (const FacetSide& side : sides) {
-      const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > kParallel;
+      const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > kSideParallel;
       if (side.smooth && is_parallel != across) walk(facet, &side, row);
     }
     std::ranges::sort(row);
