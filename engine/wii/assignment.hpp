@@ -34,9 +34,10 @@ class PairFollower {
   /// The two blobs of this image. While the followed pair is younger than 0.25 s: those nearest to it, within a gate
   /// and nearer to it than to clutter. Else, or when those mean a head that stands upside down: the pair of least cost,
   /// if that is low enough. The cost adds up the squared deviations, each over its scale, of
-  ///   the head's roll from upright, one blob's size from the other's, their size from the one learned for that
-  ///   distance, and each further LED's nearest blob from where the pair says that it must be.
-  /// Blobs within 12 pixels of clutter in the image that was followed last are left out.
+  ///   - the head's roll from upright,
+  ///   - one blob's size from the other's, and their mean from the size learned for that distance,
+  ///   - the blob nearest to each further LED from where the pair says that the LED must be.
+  /// A pair of least cost has no blob within 12 pixels of clutter in the image that was followed last.
   [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR);
   /// `current` (its pose may be missing), or another pair of this image, once in five images in a row another pair has
   /// cost clearly less: an LED whose place a lamp took while it was dark is back. Nothing is computed for images with
