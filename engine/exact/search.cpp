@@ -76,7 +76,7 @@ void Search::meet(std::uint32_t r, std::uint32_t face) {
   const Feature& feature = meeting_.mover.features[run.feature];
   const PreciseSurface& surface = *meeting_.base.faces[face].surface;
   if (feature.against_round_only && !surface.is_convex()) return;
-  if (surface.kind() == PreciseSurface::Kind::plane && looks_away(run, surface.axis())) return;
+  if (surface.kind() == SurfaceKind::plane && looks_away(run, surface.axis())) return;
   const PlacedFeature placed{&feature, f.R * feature.origin + f.p, f.R * feature.x, f.R * feature.y};
   const CurveFromSurface curve = meeting_.seen_from(surface, placed, f.twist);
   const std::uint32_t count = run.end - run.begin;

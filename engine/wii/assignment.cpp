@@ -17,7 +17,7 @@ constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly
 constexpr double kLedScale = 10;           // pixel; how near further LEDs are to where the pair alone puts them
 
 // Costs, in squared deviations over their scales.
-constexpr double kCostMax = 6;  // a tilt of 90 degrees costs 4, sizes that differ by two cost 4: both are no head
+constexpr double kPairCostMax = 6;  // a tilt of 90 degrees costs 4, sizes that differ by two cost 4: both are no head
 constexpr double kMissingLedCost = 100;  // of a further LED that is nowhere near its place
 constexpr double kSizeCostMax = 2;       // sizes of real sensors follow distance badly: a hint, no proof
 constexpr double kCostMargin = 2;        // tilt and rounded sizes of a true pair cost less
@@ -122,7 +122,7 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
 
 PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
   // Without the yaw, the places of further LEDs are known only roughly: they choose among pairs and refuse none.
-  double cost = kCostMax + kMissingLedCost * (leds_.count - 2);
+  double cost = kPairCostMax + kMissingLedCost * (leds_.count - 2);
   return least_cost_pair(reading, C_LR, false, cost);
 }
 

@@ -25,7 +25,7 @@ constexpr double kOverturned = -0.2;      // R_LH(1,1): nobody's head
 constexpr int kUnassignedMax = 3;         // reports with unassigned blobs before acquisition
 constexpr double kSizeSigma = 0.5;        // of a blob's size, which is a whole number
 constexpr double kSizeRepeats = 50;       // reports that show the same rounding error
-constexpr double kSizeLearning = 0.02;    // per report: the LEDs' brightness changes with their cells, slowly
+constexpr double kBrightnessLearning = 0.02;  // per report: the LEDs' brightness changes with their cells, slowly
 constexpr double kRoundingPixels = 0.29;  // 1 / sqrt(12): a head at rest does not average its rounding errors away
 
 class Scaat final : public TrackerBase {
