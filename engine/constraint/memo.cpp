@@ -79,12 +79,15 @@ Candidates ConstraintMemo::candidates_of(FeatureSetId a, FeatureSetId b) {
   return found;
 }
 
-void ConstraintMemo::add(Candidates& found, std::uint32_t constraint) const {
-  if (found.count == Candidates::kMax) return;
+void ConstraintMemo::add(Candidates& found, std::uint32_t constraint) {
   if (reduction_ == Reduction::common_freedom) {
     for (std::size_t i = 0; i < found.count; ++i) {
       if (same_axes(constraints_[found.constraint[i]], constraints_[constraint])) return;
     }
+  }
+  if (found.count == Candidates::kMax) {
+    ++counts_.overflows;
+    return;
   }
   found.constraint[found.count++] = static_cast<std::uint16_t>(constraint);
 }

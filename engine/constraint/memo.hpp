@@ -33,7 +33,8 @@ struct MemoCounts {
   std::uint64_t misses_null = 0;        ///< recognized anew, and there was none
   std::uint64_t misses_constraint = 0;  ///< recognized anew, and there was at least one
   std::uint64_t recognitions = 0;       ///< pairs of entities looked at
-  std::uint64_t overflows = 0;          ///< misses that could not be remembered, constraints that found no room
+  std::uint64_t overflows =
+      0;  ///< misses not remembered; constraints without room in the memo or at their pair of sets
   [[nodiscard]] std::uint64_t misses() const { return misses_null + misses_constraint; }
 };
 
@@ -86,7 +87,7 @@ class ConstraintMemo {
   };
   std::uint32_t recognize_sets(FeatureSetId a, FeatureSetId b);
   Candidates candidates_of(FeatureSetId a, FeatureSetId b);
-  void add(Candidates& found, std::uint32_t constraint) const;
+  void add(Candidates& found, std::uint32_t constraint);
   std::uint32_t number_of(std::uint32_t entity_a, std::uint32_t entity_b);
   void find_rounds(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b);
   void add_round(Stretch& rounds, std::uint32_t round);

@@ -55,8 +55,8 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
       .scenario = "peg_in_hole", .file = file, .sets = {{"hybrid", "restore"}}, .paced = true, .empty_block = kBlock};
   if (workshop.quick) request.duration = 4;
   const TimedRun run = workshop.run(request);
-  const auto slow = static_cast<double>(
-      std::count_if(run.frame_times_ns.begin(), run.frame_times_ns.end(), [](std::uint32_t ns) { return ns > kTooLong_ns; }));
+  const auto slow = static_cast<double>(std::count_if(run.frame_times_ns.begin(), run.frame_times_ns.end(),
+                                                      [](std::uint32_t ns) { return ns > kTooLong_ns; }));
   const auto frames = static_cast<double>(run.frames);
   return {
       {"R1",

@@ -78,7 +78,7 @@ class ScriptState : public Sandbox {
   Inputs& inputs;
   Scene scene;
   bool scene_taken = false;
-  std::vector<DevicePointer> devices;            ///< in the order of addDevice
+  std::vector<DevicePointer> devices;                      ///< in the order of addDevice
   std::vector<std::shared_ptr<CompanionNode>> companions;  ///< in the order of their words
   std::vector<std::pair<DevicePointer, std::size_t>> grasps;
   std::vector<std::shared_ptr<CollisionCounter>> counters;

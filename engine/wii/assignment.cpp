@@ -10,7 +10,7 @@ namespace {
 constexpr double kPairMemory = 0.25;       // s; a head needs longer to roll over
 constexpr double kPixelsPerSecond = 2000;  // 1.5 m/s at 1 m, for gaps of some reports
 constexpr double kClutterRadius = 12;      // pixel; lamps stand still, unless the remote is moved
-constexpr double kRollCosineMin = -0.2;       // cosine of the roll: no head is tilted by more than 101 degrees
+constexpr double kRollCosineMin = -0.2;    // cosine of the roll: no head is tilted by more than 101 degrees
 constexpr double kRollScale = 0.5;         // rad, about how far heads are tilted
 constexpr double kSizeScale = 1;           // blob size units
 constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly

@@ -17,8 +17,8 @@ constexpr double kGate = 60;              // pixel
 constexpr double kGateGrowth = 1500;      // pixel per s without a report
 constexpr double kTurnRate = 0.3;         // rad/s: how fast a yaw that is no longer seen becomes unknown
 constexpr double kStillKnown = 0.02;      // rad, of a yaw that was seen one report ago
-constexpr double kCostPerLedMax = 12;           // per LED seen: beyond any pixel noise, so not this head
-constexpr int kUnassignedReportsMax = 5;         // reports with unassigned blobs before acquisition
+constexpr double kCostPerLedMax = 12;     // per LED seen: beyond any pixel noise, so not this head
+constexpr int kUnassignedReportsMax = 5;  // reports with unassigned blobs before acquisition
 constexpr double kRollSigma = 0.5;        // rad
 constexpr double kPriorWidth = 2;  // times the settings' sigmas: where yaw is seen, the prior should hardly count
 

@@ -16,17 +16,17 @@ namespace {
 constexpr double kGateSigmas = 5;
 constexpr double kPixelGate = 15;  // pixel, beside what the state's uncertainty allows
 constexpr double kPixelGateMax = 200;
-constexpr double kCoastMax = 0.1;         // s without any LED that a prediction still counts as valid
-constexpr double kForgetAfter = 1;        // s without any LED after which nothing is predicted any more
-constexpr double kSigmaMax = 0.15;        // m: less sure than this is not valid
-constexpr double kUprightTime = 1;        // s: the prior pulls with this time constant where LEDs decide
-constexpr double kPinned = 1 * kDegree;   // two LEDs: yaw and pitch are held, not estimated; see report()
-constexpr double kOverturned = -0.2;      // R_LH(1,1): nobody's head
-constexpr int kUnassignedMax = 3;         // reports with unassigned blobs before acquisition
-constexpr double kSizeSigma = 0.5;        // of a blob's size, which is a whole number
-constexpr double kSizeRepeats = 50;       // reports that show the same rounding error
+constexpr double kCoastMax = 0.1;             // s without any LED that a prediction still counts as valid
+constexpr double kForgetAfter = 1;            // s without any LED after which nothing is predicted any more
+constexpr double kSigmaMax = 0.15;            // m: less sure than this is not valid
+constexpr double kUprightTime = 1;            // s: the prior pulls with this time constant where LEDs decide
+constexpr double kPinned = 1 * kDegree;       // two LEDs: yaw and pitch are held, not estimated; see report()
+constexpr double kOverturned = -0.2;          // R_LH(1,1): nobody's head
+constexpr int kUnassignedMax = 3;             // reports with unassigned blobs before acquisition
+constexpr double kSizeSigma = 0.5;            // of a blob's size, which is a whole number
+constexpr double kSizeRepeats = 50;           // reports that show the same rounding error
 constexpr double kBrightnessLearning = 0.02;  // per report: the LEDs' brightness changes with their cells, slowly
-constexpr double kRoundingPixels = 0.29;  // 1 / sqrt(12): a head at rest does not average its rounding errors away
+constexpr double kRoundingPixels = 0.29;      // 1 / sqrt(12): a head at rest does not average its rounding errors away
 
 class Scaat final : public TrackerBase {
  public:

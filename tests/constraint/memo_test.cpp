@@ -181,6 +181,27 @@ TEST(ConstraintMemo, WithoutRoomForConstraintsFindsNoneAndSaysSo) {
   EXPECT_GT(memo.counts().overflows, 0U);
 }
 
+// Nine planes that lean differently meet one: nine constraints, one more than a pair of sets has room for.
+TEST(ConstraintMemo, CountsAConstraintThatItsPairOfSetsHasNoRoomFor) {
+  const auto plane = [](double lean) {
+    const Vector3d normal = Vector3d(lean, 0, 1).normalized();
+    return Bounded<Plane>{{Vector3d::Zero(), normal, Vector3d::UnitY()}, 0.1};
+  };
+  std::vector<Entity> leaning;
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i <= Candidates::kMax; ++i) {
+    leaning.emplace_back(plane(0.1 * i));
+    all.push_back(i);
+  }
+  const std::vector<std::vector<std::uint32_t>> sets_a = {{}, all};
+  const std::vector<std::vector<std::uint32_t>> sets_b = {{}, {0}};
+  const EntitySets a(leaning, sets_a);
+  const EntitySets b({plane(0)}, sets_b);
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  EXPECT_EQ(memo.candidates(memo.look_up(1, 1)).count, Candidates::kMax);
+  EXPECT_EQ(memo.counts().overflows, 1U);
+}
+
 TEST(ConstraintMemo, AllocatesNothingAfterItIsMade) {
   const EntitySets a = test::block_with_hole();
   const EntitySets b = test::pin();

@@ -125,7 +125,8 @@ TEST_P(PassiveContact, TellsTheWorkOfEveryShare) {
     const ContactWork told = GetParam().contact_work(start.body, start.loads, kStep);
     for (const double share : {0.0, 0.25, 1.0}) {
       Case c = start;
-      EXPECT_LE(std::abs(GetParam().step(c.body, c.loads, kStep, share).contact_work - told.of(share)), tolerance(1e-15));
+      EXPECT_LE(std::abs(GetParam().step(c.body, c.loads, kStep, share).contact_work - told.of(share)),
+                tolerance(1e-15));
     }
   }
 }

@@ -1,10 +1,10 @@
-// The recipe of engine/simulation/README.md, "To add a hybrid method", followed to the letter: this file and its line in
-// CMakeLists.txt are all that a method takes; a second line, in methods.cpp, would make it a word of scenarios.
+// The recipe of engine/simulation/README.md, "To add a hybrid method", followed to the letter: this file and its line
+// in CMakeLists.txt are all that a method takes; a second line, in methods.cpp, would make it a word of scenarios.
 #include <gtest/gtest.h>
 
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::add_a_method_test {
 namespace {
 
 /// Leaves half of every force, and of every normal in implicit steps: half of its direction's force is gone as well.
@@ -71,4 +71,4 @@ TEST(Methods, StandInTheOrderOfTheirPrecedence) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::add_a_method_test

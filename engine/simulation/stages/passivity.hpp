@@ -1,9 +1,9 @@
-// The passivity controller of the contacts (dynamics/integrator.hpp): contacts that a method changed, or that appeared when
-// one was switched off, give no more energy than all contacts were given.
+// The passivity controller of the contacts (dynamics/integrator.hpp): contacts that a method changed, or that appeared
+// when one was switched off, give no more energy than all contacts were given.
 //
-// Bodies that move and touch each other are one group. The same fraction acts for all of a group: what is taken from one
-// side of a contact is taken from the other, and momentum stays. A body that the exact response moves is alone: it has
-// all of its contacts.
+// Bodies that move and touch each other are one group. The same fraction acts for all of a group: what is taken from
+// one side of a contact is taken from the other, and momentum stays. A body that the exact response moves is alone: it
+// has all of its contacts.
 #pragma once
 
 #include <vector>

@@ -26,8 +26,8 @@ Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& the
 
 }  // namespace
 
-void Reactions::find(const World& world, const Contacts& contacts, const Response& response,
-                     const ExactResponse& exact, const Motion& motion) {
+void Reactions::find(const World& world, const Contacts& contacts, const Response& response, const ExactResponse& exact,
+                     const Motion& motion) {
   for (std::size_t i = 0; i < on_body_.size(); ++i)
     on_body_[i] = world.moves(world.bodies[i]) ? motion.work(i).contact : Wrench{};
   for (std::size_t l = 0; l < world.links.size(); ++l) {
