@@ -20,7 +20,7 @@ double speed_of(const Body& body, const Vector6d& u) {
 }
 
 bool all_faces_known(const Body& body) {
-  return body.exact->known_faces == body.exact->faces.size();
+  return body.exact->precise_face_count == body.exact->faces.size();
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ void Simulation::Implementation::make_hybrid(const BodyDescription& description,
   exact::BodyOptions options;
   options.spacing = description.voxel_size;
   auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
-  if (precise->knows_anything()) body.exact = std::move(precise);
+  if (precise->has_precise_faces()) body.exact = std::move(precise);
   if (!solver) solver = std::make_unique<exact::ConvexStep>(kRowsMax);
   const auto solved = std::count_if(bodies.begin(), bodies.end(), [](const Body& b) { return b.exact && b.can_move; });
   if (solved > exact::ConvexStep::kBodiesMax)
@@ -175,7 +175,7 @@ void Simulation::Implementation::find_exact_contacts(Link& link) {
     exact::BodyMotion motion{.X_WB = body.rigid.pose(), .p_WC = body.rigid.p_WC, .twist = {}};
     if (!body.solved) return motion;
     motion.twist = {body.velocity.head<3>(), body.velocity.tail<3>()};
-    motion.before = {body.rigid.v_C, body.rigid.omega};
+    motion.last_twist = {body.rigid.v_C, body.rigid.omega};
     return motion;
   };
   link.exact->find(motion_of(bodies[link.first]), motion_of(bodies[link.second]), dt, closing(link));

@@ -140,7 +140,7 @@ TEST_P(EverySurface, IsAsFarAwayAsTheNearestOfManyOfItsPoints) {
   }
 }
 
-// Where the surface's parameters say that a point is: lengths as they are, angles as the share of a turn.
+// Where the surface's parameters say that a point is: lengths as they are, angles as fractions of a turn.
 TEST_P(EverySurface, ChartsAPointByItsParameters) {
   const auto turn = [](double angle) { return turn_of(std::cos(angle), std::sin(angle)); };
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
