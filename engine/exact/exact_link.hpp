@@ -3,25 +3,23 @@
 // item 7.
 //
 // The features of either body (exact_body.hpp) are tested against the faces of the other.
-//   Closest place    Newton's method moves a sample to the place of its segment that is closest to the face.
-//   Gap and normal   are those of the precise surface, less the radius of the feature's ball.
-//   Trim             A place whose foot is beyond the border of a face gives no row with it.
-//   Ownership        At a convex edge the solid is where both signed distances are negative, so the face with the
-//   larger
-//                    distance owns the place. If the sample's segment crosses from one face to the other, the row is
-//                    that of edge against edge, with the normal perpendicular to both. At a concave edge each face has
-//                    its row, so the smaller distance counts.
-//   Before contact   A place outside of both faces of a convex edge is owned by the face that it would pass last within
-//                    the step. A pin that enters a hole beside its rim is so not stopped by the plane around the hole.
-//                    A place that lies on one of the two faces and slides is judged by its last velocity.
-//   Culling          On coincident faces most samples are owned by another face or see the face from behind. Such
-//                    samples are rejected a block at a time (ownership_culling.hpp).
-//   Reduction        A group of segments has one row, at its closest place at the end of the step. A coincident group
-//   has
-//                    rows at its ends too. If the closest place has little weight, the candidate with the most has a
-//                    row.
-//   Normal cone      The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25 to
-//                    40 degrees.
+//   Closest place   Newton's method moves a sample to the place of its segment that is closest to the face.
+//   Gap and normal  are those of the precise surface, less the radius of the feature's ball.
+//   Trim            A place whose foot is beyond the border of a face gives no row with it.
+//   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
+//                   larger distance owns the place. If the sample's segment crosses from one face to the other, the
+//                   row is that of edge against edge, with the normal perpendicular to both. At a concave edge each
+//                   face has its row, so the smaller distance counts.
+//   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
+//                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
+//                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.
+//   Culling         On coincident faces most samples are owned by another face or see the face from behind. Such
+//                   samples are rejected a block at a time (ownership_culling.hpp).
+//   Reduction       A group of segments has one row, at its closest place at the end of the step. A coincident group
+//                   has rows at its ends too. If the closest place has little weight, the candidate of the largest
+//                   weight has a row too.
+//   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25
+//                   to 40 degrees.
 // A row first appears with a gap of the margin or more and so without force, except for those of a group's ends.
 //
 // Accuracy. Rows are linear; motion and surfaces are curved. Within one step a row lets through, and gives back in the

@@ -7,15 +7,15 @@
 // exact as the file's numbers. The result does not depend on the order of triangles and vertices.
 //
 // Limits.
-//   Cylinder or prism  A mesh cannot tell: a regular prism has the vertices of the cylinder around it. Cylinders of 12
-//   to
-//                      24 facets are far more common in files than such prisms, so the angle between facets decides: up
-//                      to `round_step_max` they are curved. By default 12 sides are a cylinder and 11 are planes.
+//   Cylinder or prism  A mesh cannot tell: a regular prism has the vertices of the cylinder around it. Cylinders of
+//                      12 to 24 facets are far more common in files than such prisms, so the angle between facets
+//                      decides: up to `round_step_max` they are curved. By default 12 sides are a cylinder and 11 are
+//                      planes.
 //   Few facets         A curved surface of fewer than four facets becomes planes.
 //   Separate pieces    Coplanar or coaxial pieces that do not touch are separate faces.
 //   Area               Face::area is that of the triangles.
 //   Free forms         A piece of a free form that is a torus to the tolerance, with more than 200 triangles, becomes
-//   one.
+//                      one.
 #pragma once
 
 #include "engine/geometry/part.hpp"
@@ -32,8 +32,8 @@ struct RecoverOptions {
   double round_step_max = 0.5497787143782138;
 };
 
-/// Fills faces, edges and face_of_triangle of a part, and adds a note on the kinds found. `exact` stays false. About 10
-/// us per triangle, 0.1 ms per triangle where nothing fits. @pre !part.has_brep(); vertices are finite
+/// Fills faces, edges and face_of_triangle of a part, and adds a note on the kinds found. `exact` stays false.
+/// About 10 us per triangle, 0.1 ms where nothing fits. @pre !part.has_brep(); vertices are finite
 void recover_brep(Part& part, const RecoverOptions& options = {});
 
 }  // namespace verisim

@@ -1,14 +1,13 @@
 // Segmentation of a mesh into surfaces: which triangles are pieces of one plane, cylinder, cone, sphere or torus.
 //
-//   1. Seeds      Every facet is a seed, the largest first. Surfaces of each kind are fitted to the facets around it
-//                 (neighborhoods.hpp).
-//   2. Growing    Each fit grows over the mesh and is fitted again (region_growing.hpp). The candidate of the largest
-//   area
-//                 is taken; of equal ones the simplest kind.
-//   3. Planes     A facet that borders as a plane does becomes a plane.
-//   4. Merging    Regions that lie on a larger surface are merged into it; patches of a free form are released again
-//                 (region_merging.hpp).
-//   5. The rest   Triangles on no surface become `other` faces, joined where they meet smoothly.
+//   1. Seeds     Every facet is a seed, the largest first. Surfaces of each kind are fitted to the facets around it
+//                (neighborhoods.hpp).
+//   2. Growing   Each fit grows over the mesh and is fitted again (region_growing.hpp). The candidate of the largest
+//                area is taken; of equal ones the simplest kind.
+//   3. Planes    A facet that borders as a plane does becomes a plane.
+//   4. Merging   Regions that lie on a larger surface are merged into it. Patches of a free form are released again
+//                (region_merging.hpp).
+//   5. The rest  Triangles on no surface become `other` faces, joined where they meet smoothly.
 #pragma once
 
 #include <vector>
