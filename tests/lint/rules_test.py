@@ -37,7 +37,7 @@ HOME_OF_LIBRARY = {
     r"assimp/.*": ["engine/geometry/cad/"],
     r"CGAL/.*": ["engine/geometry/"],
     r"fcl/.*": ["engine/contact/"],
-    r"hwy/.*": ["engine/contact/", "engine/constraint/restore_run.cpp"],
+    r"hwy/.*": ["engine/contact/", "engine/constraint/restore_batch.cpp"],
     r"CLI/.*": ["engine/cli/"],
     r"nlohmann/.*": ["engine/script/", "engine/cli/"],
     r"(netinet/.*|arpa/inet|netdb)\.h": ["engine/vrpn/"],

@@ -36,9 +36,9 @@ TEST(RestoreCylindrical, GivesTheWorkedNumberForARecognizedPin) {
   c.kind = ConstraintKind::cylindrical;
   c.pairing = Pairing::axis_axis;
   c.field = NormalField::about_line;
-  c.guide = Side::a;
+  c.normal_source = Side::a;
   c.pin = Side::b;
-  c.pushes_only = false;
+  c.unilateral = false;
   c.clearance = 0.005;
   c.a = {Vector3d::Zero(), kZ, 0.075, 0.1, 0};
   c.b = {Vector3d::Zero(), kZ, 0.070, 0.2, 0};

@@ -20,8 +20,8 @@ struct LinePlane {
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::between(a, b, kKind, Pairing::axis_plane, NormalField::constant);
-    c.guide = Side::b;
-    c.pushes_only = true;
+    c.normal_source = Side::b;
+    c.unilateral = true;
     return c;
   }
 };

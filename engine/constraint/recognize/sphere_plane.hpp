@@ -19,8 +19,8 @@ struct SpherePlane {
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::between(a, b, kKind, Pairing::point_plane, NormalField::constant);
-    c.guide = Side::b;
-    c.pushes_only = true;
+    c.normal_source = Side::b;
+    c.unilateral = true;
     return c;
   }
 };
