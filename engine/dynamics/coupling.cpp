@@ -6,7 +6,8 @@
 namespace verisim {
 namespace {
 
-double share_of(double x) {
+/// Left side of the stability rule, x = dt sqrt(k / m).
+double budget_used_by(double x) {
   return x * x + 4 * x;
 }
 
@@ -20,7 +21,7 @@ Vector3d rest_within(double sum_max, const Vector3d& spring, const Vector3d& dam
 
 Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize) {
   const double inertia_min = smallest_eigenvalue(body.inertia_B);
-  const double x_max = std::sqrt(4 + kCouplingShare) - 2;  // x^2 + 4x = kCouplingShare
+  const double x_max = std::sqrt(4 + kCouplingBudget) - 2;  // x^2 + 4x = kCouplingBudget
   const double bound = x_max * x_max / (dt * dt);
   Coupling c;
   c.stiffness = stabilize ? std::min(limits.stiffness_max, bound * body.mass) : limits.stiffness_max;
@@ -30,8 +31,8 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   c.torque_max = limits.torque_max;
   c.damping = 2 * std::sqrt(c.stiffness * body.mass);
   c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
-  c.share = std::max(share_of(dt * std::sqrt(c.stiffness / body.mass)),
-                     share_of(dt * std::sqrt(c.angular_stiffness / inertia_min)));
+  c.budget_used = std::max(budget_used_by(dt * std::sqrt(c.stiffness / body.mass)),
+                           budget_used_by(dt * std::sqrt(c.angular_stiffness / inertia_min)));
   return c;
 }
 

@@ -22,7 +22,7 @@ void Simulation::Implementation::join_groups() {
 void Simulation::Implementation::share_contacts() {
   bool any = false;
   for (Body& body : bodies) {
-    body.loads.contact_share = 1;
+    body.loads.contact_scale = 1;
     any = any || body.reshaped;
   }
   if (!any || !parameters.passive_contacts) return;
@@ -42,10 +42,10 @@ void Simulation::Implementation::share_contacts() {
     Body& body = bodies[i];
     Loads& of_first = bodies[body.group].loads;
     if (body.group == i && body.reshaped) {
-      of_first.contact_share = share_within(std::max(0.0, budget), body.contact_work);
-      budget -= body.contact_work.of(of_first.contact_share);
+      of_first.contact_scale = passive_scale(std::max(0.0, budget), body.contact_work);
+      budget -= body.contact_work.at(of_first.contact_scale);
     }
-    body.loads.contact_share = of_first.contact_share;
+    body.loads.contact_scale = of_first.contact_scale;
   }
 }
 
@@ -54,7 +54,7 @@ void Simulation::Implementation::share_contacts() {
 Wrench Simulation::Implementation::applied(const LinkSide& mine, const Body& body, const LinkSide& theirs,
                                            const Body& other) const {
   const auto on = [&](const LinkSide& side, const ContactEnd& end) {
-    return acted(side.wrench, side.stiffness, side.damping, side.drift, end, dt);
+    return wrench_at_end(side.wrench, side.stiffness, side.damping, side.drift, end, dt);
   };
   if (moves(body)) return on(mine, body.contact_end);
   if (!moves(other)) return mine.wrench;

@@ -148,7 +148,7 @@ void Simulation::Implementation::respond() {
     ++bodies[link.second].links_touching;
   }
   for (Body& body : bodies) {
-    const double left = 4 - (body.loads.coupling != nullptr ? body.coupling.share : 0);
+    const double left = 4 - (body.loads.coupling != nullptr ? body.coupling.budget_used : 0);
     if (body.links_touching > 0) body.link_body.budget = left / body.links_touching;
   }
   const bool implicit = parameters.integrator == Integrator::implicit;
