@@ -6,7 +6,7 @@
 namespace verisim {
 namespace {
 
-/// Of the budget that is left, so much is used: W changes within a step, the rule holds for frozen W.
+/// Fraction of the budget that is used: the rule assumes a constant W, but W changes within a step.
 constexpr double kSafety = 0.8;
 
 /// Upper bound of the largest eigenvalue of M^-1 W: the Frobenius norm of M^-1/2 W M^-1/2 = sqrt(trace((M^-1 W)^2)).
@@ -68,8 +68,8 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
     verisim::query(*map_, *shell_, X_MP, contacts_, cost);
 }
 
-void CollisionLink::stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
-                            double dt) {
+void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+                                     double dt) {
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
   const Matrix3d R_MW = map.X_WB.rotation.toRotationMatrix().transpose();
@@ -104,25 +104,25 @@ Twist CollisionLink::relative_twist(const LinkBody& first, const LinkBody& secon
 void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
                             double dt) {
   if (contacts_.size == 0) return;
-  stiffen(first, second, parameters, dt);
+  choose_stiffness(first, second, parameters, dt);
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
 void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices) {
   if (contacts_.size == 0) return;
-  share_out(first, second, sum(contacts_, about_), with_matrices);
+  distribute(first, second, sum(contacts_, about_), with_matrices);
 }
 
 void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
                                     double dt) {
   if (contacts_.size == 0) return;
-  stiffen(first, second, parameters, dt);
+  choose_stiffness(first, second, parameters, dt);
   const Twist relative = relative_twist(first, second);
-  share_out(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true);
+  distribute(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true);
 }
 
-void CollisionLink::share_out(const LinkBody& first, const LinkBody& second, const ContactSum& total,
-                              bool with_matrices) {
+void CollisionLink::distribute(const LinkBody& first, const LinkBody& second, const ContactSum& total,
+                               bool with_matrices) {
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
   LinkSide& on_points = first_is_map_ ? on_second_ : on_first_;

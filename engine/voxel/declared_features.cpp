@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnitLength = 1e-9;  // a direction's length may differ from one by this
 
-/// What an entity is made of, in one shape for all kinds.
+/// An entity in one form for all kinds.
 struct Numbers {
   int kind = 0;
   Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
@@ -52,7 +52,7 @@ void check(const std::string& owner, const Numbers& n) {
   }
 }
 
-/// What no bound on single numbers tells of a round face.
+/// Checks of a curved face beyond the bounds of single numbers.
 void check_shape(const std::string& owner, const Surface& surface) {
   if (const auto* cone = std::get_if<Cone>(&surface); cone != nullptr && cone->half_angle >= 0.5 * pinned::kPi) {
     fail(ErrorKind::input, "'{}': a declared cone has a half angle of {} rad but it must be below pi/2, 90 degrees",
@@ -88,8 +88,8 @@ DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, con
     edges_.push_back(std::get<Edge>(entity));
   } else {
     faces_.push_back(std::get<Face>(entity));
-    met_.push_back(false);
-    lean_.push_back(0);
+    used_.push_back(false);
+    outwardness_.push_back(0);
   }
   return next;
 }
@@ -105,16 +105,16 @@ FeatureSetId DeclaredFeatures::add(const std::string& owner, std::span<const Ent
   return sets_.intern(places);
 }
 
-/// Adds a voxel's say about whether the face is a hole. A voxel where faces meet says little or the contrary.
-void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d& inward) {
+/// Adds a voxel's inward normal to the evidence for a hole. Where faces meet, a voxel is weak or wrong evidence.
+void DeclaredFeatures::add_normal(std::size_t face, const Vector3d& p, const Vector3d& inward) {
   Surface& surface = faces_[face].surface;
   const auto from_axis = [&](const Vector3d& point, const Vector3d& direction) {
     const Vector3d arm = p - point;
     return Vector3d((arm - arm.dot(direction) * direction).normalized());
   };
   const auto add = [&](bool& hole, const Vector3d& away) {
-    lean_[face] += away.dot(inward);
-    hole = lean_[face] > 0;
+    outwardness_[face] += away.dot(inward);
+    hole = outwardness_[face] > 0;
   };
   if (auto* cylinder = std::get_if<Cylinder>(&surface)) {
     add(cylinder->hole, from_axis(cylinder->point, cylinder->direction));
@@ -125,7 +125,7 @@ void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d
   }
 }
 
-/// The circle in the set that lies on the cylinder, square to its axis; null if none does.
+/// The circle in the set that lies on the cylinder, perpendicular to its axis; null if there is none.
 const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const Place> set) const {
   constexpr double kSame = 1e-9;  // m and rad: what was declared by the same numbers
   for (const Place place : set) {
@@ -138,13 +138,13 @@ const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const
   return nullptr;
 }
 
-/// Widens the face's bounds to a voxel: along an axis all of it, but up to the rim where the voxel has one; around an
-/// axis everything is taken as covered.
+/// Extends the face's bounds to a voxel. Along an axis to all of the voxel, or to the rim if its set has one. Around an
+/// axis the face is taken as closed.
 void DeclaredFeatures::extend(std::size_t face, std::span<const Place> set, const Vector3d& p, double half_side) {
   Face& f = faces_[face];
   const auto include = [&](std::array<double, 2>& range, double low, double high) {
-    range[0] = met_[face] ? std::min(range[0], low) : low;
-    range[1] = met_[face] ? std::max(range[1], high) : high;
+    range[0] = used_[face] ? std::min(range[0], low) : low;
+    range[1] = used_[face] ? std::max(range[1], high) : high;
   };
   const auto widen = [&](std::array<double, 2>& range, double at) { include(range, at - half_side, at + half_side); };
   if (const auto* plane = std::get_if<Plane>(&f.surface)) {
@@ -180,9 +180,9 @@ void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, Featur
   for (const Place place : set) {
     if (place % 2 != 0) continue;
     const std::size_t face = place / 2;
-    weigh(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
+    add_normal(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
     extend(face, set, p, 0.5 * body.voxmap.voxel_size);
-    met_[face] = true;
+    used_[face] = true;
   }
 }
 
