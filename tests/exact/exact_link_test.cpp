@@ -184,7 +184,8 @@ TEST(SliderOnTwoBoxes, OverlapsByWhatItIsPressedInAndNoMore) {
   }
 }
 
-// What lies on a ball's pole touches it where all turns of the ball's chart are one place, and its last cells end.
+// A plate on a ball's pole touches it where the chart of the ball is degenerate: all turns are one place, and the last
+// cells end.
 TEST(PlateOnABall, RestsOnThePole) {
   constexpr double kRadius = 0.03;
   constexpr double kGap = 1e-5;
