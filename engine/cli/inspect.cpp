@@ -25,7 +25,7 @@ struct InspectOptions {
   bool json = false;
 };
 
-/// What voxelizing a part yields, or why it cannot be.
+/// The result of voxelizing a part, or the reason why that fails.
 struct VoxelStatistics {
   std::uint32_t surface_voxels = 0;
   std::size_t memory_bytes = 0;

@@ -29,7 +29,7 @@ std::uint32_t clamped_ns(Clock::duration d) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(ns, 0, 0xffffffffLL));
 }
 
-/// What /timing holds of one frame, in the order of its columns.
+/// The /timing values of one frame, in the order of the columns.
 struct Timing {
   std::uint32_t frame_ns;
   std::array<std::uint32_t, kStageNames.size()> stage_ns;
@@ -88,7 +88,7 @@ class Pace {
   Clock::duration period_{};
 };
 
-/// Counts overruns block by block, and lets an empty block follow each.
+/// Counts overruns block by block, and runs an empty block after each.
 class Blocks {
  public:
   Blocks(const LoopOptions& options, LoopResult& result)

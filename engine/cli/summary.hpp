@@ -1,4 +1,4 @@
-// What a run reports when it is over: one JSON object, a table for people, the attributes of /summary.
+// The report at the end of a run: a JSON object, a table for a terminal, the attributes of /summary.
 #pragma once
 
 #include <map>
@@ -13,7 +13,8 @@ struct Summary {
   std::string scenario, run_file, outcome, state_hash, end;
   std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
   std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
-  std::vector<std::pair<std::string, std::uint64_t>> constraints;  ///< name, frames in which a pair stood under it
+  std::vector<std::pair<std::string, std::uint64_t>>
+      constraints;  ///< name, frames in which a pair of bodies was under it
   bool realtime_priority = false;
   double simulated_s = 0, wall_s = 0, load_s = 0, force_max = 0, penetration_max = 0;
   struct Times {
