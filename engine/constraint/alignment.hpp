@@ -52,8 +52,8 @@ struct Misalignment {
   double distance = 0;               ///< d of eq. 8.1 and 8.2 [m]
   double offset = 0;                 ///< the same in the middle of the engaged length [m]
   double engagement_length = 0;      ///< over which the two sides overlap along the axis [m]
-  double engagement_length_max = 0;  ///< length of the shorter side [m]
   double local_clearance = 0;        ///< of the fit at this place [m], >= 0: a cone's grows as it is pulled out
+  double engagement_length_max = 0;  ///< length of the shorter side [m]
 };
 
 /// Pure; about 50 ns. Zero and NaN lengths cannot occur (entities.hpp). A pose that is not finite gives members that
