@@ -116,7 +116,7 @@ std::string listed(const ordered_json& counted) {
   return text.empty() ? "none known" : text;
 }
 
-void print_table(const ordered_json& report) {
+void print_inspection(const ordered_json& report) {
   for (const auto& p : report["parts"]) {
     const auto row = [](const char* name, const std::string& value) {
       std::printf("  %-16s%s\n", name, value.c_str());
@@ -182,7 +182,7 @@ void inspect(const InspectOptions& o) {
   if (o.json)
     std::printf("%s\n", report.dump().c_str());
   else
-    print_table(report);
+    print_inspection(report);
 }
 
 }  // namespace

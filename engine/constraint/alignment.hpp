@@ -57,16 +57,17 @@ struct Misalignment {
 };
 
 /// Pure; about 50 ns. Zero and NaN lengths cannot occur (entities.hpp). A pose that is not finite gives members that
-/// are not finite. @param X_AB places body B in A
+/// are not finite. @param X_AB places body B in A @pre constraint.kind is not `none`: nothing else of it means anything
 [[nodiscard]] Misalignment misalignment(const Constraint& constraint, const Pose& X_AB);
 
 /// alpha, from 0 to 1; 0 if a number is not finite. Cost: `by_type` a division, the others two pinned exp and an atan2.
+/// @pre scales.voxel_size > 0, scales.steepness >= 0, both finite
 [[nodiscard]] double alignment(AlignmentMeasure measure, const Constraint& constraint, const Misalignment& m,
                                const AlignmentScales& scales);
 
 /// How far a pin's end is clear of its hole: 0 while it covers any part of the hole (the axes are closer than the sum
 /// of both radii), rising to 1 a voxel farther out. 0 if a number is not finite. Does not depend on the measure.
-/// @pre `round` is axis_axis
+/// @pre `round` is axis_axis; scales.voxel_size > 0
 [[nodiscard]] double clear_of_hole(const Constraint& round, const Misalignment& m, const AlignmentScales& scales);
 
 }  // namespace verisim

@@ -99,6 +99,7 @@ bool is_gated_by(const Constraint& planar, const Constraint& round) {
 Vector3d restore_common(std::span<const ActiveConstraint* const> active, std::span<const double> alpha,
                         const Vector3d& x, const Vector3d& f) {
   VERISIM_ASSERT(active.size() <= kActiveMax);
+  VERISIM_ASSERT(active.size() == alpha.size());
   std::array<ActiveNormal, kActiveMax> normals;
   std::size_t n = 0;
   for (std::size_t i = 0; i < active.size(); ++i) n += has_normal(*active[i], alpha[i], x, normals[n]) ? 1U : 0U;

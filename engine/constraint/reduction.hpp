@@ -49,7 +49,8 @@ enum class Reduction { exactly_one, common_freedom };
 /// Active constraints at one contact: three normals span space.
 inline constexpr std::size_t kActiveMax = 3;
 
-/// f' under all constraints of `active` together (common_freedom). @pre active.size() <= kActiveMax
+/// f' under all constraints of `active` together (common_freedom). @pre active.size() <= kActiveMax,
+/// an alpha for each
 [[nodiscard]] Vector3d restore_common(std::span<const ActiveConstraint* const> active, std::span<const double> alpha,
                                       const Vector3d& x, const Vector3d& f);
 

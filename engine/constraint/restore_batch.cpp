@@ -1,5 +1,8 @@
 #include "engine/constraint/restore_batch.hpp"
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/constraint/restore_batch.cpp"
 #include "hwy/foreach_target.h"  // compiles this file once per target
@@ -96,6 +99,9 @@ HWY_EXPORT(restore_without_roots);
 }  // namespace
 
 void restore_batch(const ContactBatch& batch, const ActiveConstraint& active) {
+  VERISIM_ASSERT(batch.count == 0 || (batch.x != nullptr && batch.y != nullptr && batch.z != nullptr));
+  VERISIM_ASSERT(batch.count == 0 || (batch.fx != nullptr && batch.fy != nullptr && batch.fz != nullptr));
+  VERISIM_ASSERT(is_fraction(active.alpha));
   if (active.field != NormalField::about_cone && active.field != NormalField::about_ring) {
     HWY_DYNAMIC_DISPATCH(restore_without_roots)(batch, active);
     return;

@@ -22,7 +22,7 @@ struct ContactBatch {
 };
 
 /// `active` is relative to the batch's origin. About 1 ns per contact; 5 ns for cones and rings, whose normals need a
-/// square root.
+/// square root. @pre no column is null, unless the batch is empty; active.alpha is in [0, 1]
 void restore_batch(const ContactBatch& batch, const ActiveConstraint& active);
 
 }  // namespace verisim

@@ -27,6 +27,11 @@
 //
 // Rotation conserves angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then
 // omega = I1^-1 L1. Spin energy stays below |L|^2 / (2 I_min) at any speed: a fast needle cannot blow up.
+//
+// Every function below that takes a body, its loads and dt requires (each half of a step: for its part):
+// @pre dt is finite and above 0; the body has mass, and its state is finite with a unit rotation; the matrices of the
+// loads are symmetric, contact_scale is in [0, 1]. Loads need not be finite; then the body becomes infinite, and its
+// owner checks that after every step (RigidBody::is_finite).
 #pragma once
 
 #include "engine/base/pose.hpp"
@@ -42,7 +47,6 @@ struct Loads {
   Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
   Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
   Vector6d contact_drift = Vector6d::Zero();      ///< sum of K times the other body's twist at C
-  double contact_scale = 1;                       ///< 0 to 1, of the passivity controller (passive_scale)
   const Coupling* coupling = nullptr;             ///< null: not held
   CouplingForce coupling_at_start;
   CouplingTarget target;
@@ -54,6 +58,7 @@ struct ContactEnd {
   double scale = 1;  ///< 0: the contact separated
   Vector6d u0 = Vector6d::Zero(), u1 = Vector6d::Zero();
 };
+/// @pre dt is finite and above 0; end.scale is in [0, 1]
 [[nodiscard]] Wrench wrench_at_end(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift,
                                    const ContactEnd& end, double dt);
 
@@ -69,20 +74,22 @@ struct StepWork {
   ContactEnd contact_end;
 };
 
-[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
-[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
+/// @param contact_scale  0 to 1, of the passivity controller (passive_scale)
+[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale = 1);
+[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale = 1);
 
 /// Work [J] of a contact on a body if it is scaled by s: w(s) = quadratic s^2 + linear s. `all` is w(1), rounded as in
 /// the step itself.
 struct ContactWork {
   double all = 0, quadratic = 0, linear = 0;
   ContactWork& operator+=(const ContactWork& other);
-  [[nodiscard]] double at(double scale) const;
+  [[nodiscard]] double at(double scale) const;  ///< @pre scale is in [0, 1]
 };
 /// The contact work of the step that these loads would make.
 [[nodiscard]] ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads, double dt);
 [[nodiscard]] ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, double dt);
-/// Largest scale at which the work does not exceed the energy available [J, >= 0]. Exactly 1 if w(1) does not.
+/// Largest scale at which the work does not exceed the energy available [J]. Exactly 1 if w(1) does not; 0 if the work
+/// is beyond double precision. @pre available >= 0
 [[nodiscard]] double passive_scale(double available, const ContactWork& work);
 
 /// [J] of a potential whose force on the body is `force`, while steps of step_semi_implicit advance it (see above).
@@ -102,6 +109,7 @@ struct ImplicitStep {
 };
 [[nodiscard]] ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt);
 /// Moves the body with velocity u1. @param solved  wrench of the contacts solved in between: dt solved = A u1 - b
+/// @pre `step` comes from begin_implicit
 [[nodiscard]] StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
                                     const Wrench& solved, double dt);
 

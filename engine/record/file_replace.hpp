@@ -30,7 +30,6 @@ class Replacement {
   void write(const std::string& content) const;
   /// Replaces the target. Error(io). A second call does nothing.
   void commit();
-  [[nodiscard]] bool committed() const { return committed_; }
 
  private:
   std::string target_, path_;

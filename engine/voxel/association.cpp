@@ -14,10 +14,6 @@ namespace verisim {
 
 namespace {
 
-void add(BrickMask& mask, const BrickMask& more) {
-  for (std::size_t z = 0; z < mask.size(); ++z) mask[z] |= more[z];
-}
-
 BrickMask common(const BrickMask& a, const BrickMask& b) {
   BrickMask result;
   for (std::size_t z = 0; z < result.size(); ++z) result[z] = a[z] & b[z];

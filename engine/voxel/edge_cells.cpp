@@ -31,10 +31,6 @@ BrickMask part_in_brick(const CellRange& range, const Eigen::Vector3i& corner) {
   return mask;
 }
 
-void add(BrickMask& mask, const BrickMask& more) {
-  for (std::size_t z = 0; z < mask.size(); ++z) mask[z] |= more[z];
-}
-
 auto key(const EdgeCells& cells) {
   return std::tuple(cells.brick, cells.edge);
 }

@@ -9,7 +9,7 @@ namespace verisim {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 constexpr double kSameAngle = 1e-9;  // rad: an arc that closes to this is a whole ellipse
 
 /// Slabs: does the segment pq meet the closed box?

@@ -7,10 +7,10 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kMemory = 0.25;           // s; a head needs longer to roll over
+constexpr double kPairMemory = 0.25;       // s; a head needs longer to roll over
 constexpr double kPixelsPerSecond = 2000;  // 1.5 m/s at 1 m, for gaps of some reports
 constexpr double kStranger = 12;           // pixel; lamps stand still, unless the remote is moved
-constexpr double kOverturned = -0.2;       // cosine of the roll: no head is tilted by more than 101 degrees
+constexpr double kRollCosineMin = -0.2;    // cosine of the roll: no head is tilted by more than 101 degrees
 constexpr double kRollScale = 0.5;         // rad, about how far heads are tilted
 constexpr double kSizeScale = 1;           // blob size units
 constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly
@@ -72,10 +72,10 @@ PairFollower::Match PairFollower::solve(const Reading& reading, int first, int s
 
 PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) {
   if (reading.blob_count < 2) return {};
-  if (followed_ && t - t_ <= kMemory) {
+  if (followed_ && t - t_ <= kPairMemory) {
     Match match = continue_pair(t - t_, reading, C_LR);
     if (!match.found()) return match;
-    if (match.pose.cos_roll > kOverturned) return reconsidered(reading, match, C_LR);
+    if (match.pose.cos_roll > kRollCosineMin) return reconsidered(reading, match, C_LR);
   }
   return acquire(reading, C_LR);
 }

@@ -10,16 +10,15 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kMemory = 0.25;          // s that a lost head is looked for where it was
+constexpr double kLostHeadMemory = 0.25;  // s that a lost head is looked for where it was
 constexpr double kOtherRemoteMax = 0.03;  // s: three reports; an older image of the other remote is no use
 constexpr double kBothSilent = 0.05;      // s without the first remote after which the second reports
 constexpr double kGate = 60;              // pixel
 constexpr double kGateGrowth = 1500;      // pixel per s without a report
 constexpr double kTurnRate = 0.3;         // rad/s: how fast a yaw that is no longer seen becomes unknown
 constexpr double kStillKnown = 0.02;      // rad, of a yaw that was seen one report ago
-constexpr double kSigmaMax = 0.15;        // m: less sure than this is not valid
-constexpr double kCostMax = 12;           // per LED seen: beyond any pixel noise, so not this head
-constexpr int kPatience = 5;              // reports before the head is sought anew beside a strange light
+constexpr double kCostPerLedMax = 12;     // per LED seen: beyond any pixel noise, so not this head
+constexpr int kStrangeReportsMax = 5;     // reports before the head is sought anew beside a strange light
 constexpr double kRollSigma = 0.5;        // rad
 constexpr double kPriorWidth = 2;         // times the settings' sigmas: where yaw is seen, belief should hardly count
 
@@ -29,6 +28,7 @@ class MultiPoint final : public TrackerBase {
       : TrackerBase(settings),
         name_(name),
         remotes_(remotes),
+        X_R1R2_(settings.X_R1R2.value_or(Pose())),
         solver_(settings),
         followers_{PairFollower(settings.leds, pinhole()), PairFollower(settings.leds, pinhole())} {}
 
@@ -46,16 +46,16 @@ class MultiPoint final : public TrackerBase {
     if (!reports(t, remote) || !gravity(0).known()) return;
     upright_ = believe();
     found_ = {};
-    if (followed_ && t - t_followed_ <= kMemory) {
+    if (followed_ && t - t_followed_ <= kLostHeadMemory) {
       found_ = follow(t);
-      if (strange_ >= kPatience) seek_again(t);
+      if (strange_ >= kStrangeReportsMax) seek_again(t);
     } else {
       found_ = acquire(t);
     }
-    if (!found_.found || found_.cost > kCostMax * settings().leds.count) return;
+    if (!found_.found || found_.cost > kCostPerLedMax * settings().leds.count) return;
     level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
     result.known = true;
-    result.usable = result.covariance.diagonal().head<3>().maxCoeff() < kSigmaMax * kSigmaMax;
+    result.usable = result.covariance.diagonal().head<3>().maxCoeff() < kValidSigmaMax * kValidSigmaMax;
   }
 
   [[nodiscard]] bool reports(double t, int remote) const override {
@@ -165,7 +165,7 @@ class MultiPoint final : public TrackerBase {
   [[nodiscard]] Pose in_first(const TwoPointPose& pose, int remote) const {
     const Quaterniond C_RL = Quaterniond(gravity(remote).C_LR()).conjugate();
     const Pose X_iH{C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()};
-    return remote == 0 ? X_iH : settings().X_R1R2 * X_iH;
+    return remote == 0 ? X_iH : X_R1R2_ * X_iH;
   }
 
   [[nodiscard]] Pose predicted(double t) const {
@@ -175,7 +175,7 @@ class MultiPoint final : public TrackerBase {
   void admitted(double t, bool valid) override {
     if (!valid) return;
     const double dt = t - t_followed_;
-    const bool continued = followed_ && dt <= kMemory;
+    const bool continued = followed_ && dt <= kLostHeadMemory;
     if (!continued)
       velocity_R_.setZero();
     else if (dt > 1e-4)
@@ -194,6 +194,7 @@ class MultiPoint final : public TrackerBase {
 
   std::string_view name_;
   int remotes_;
+  Pose X_R1R2_;  ///< the second remote in coordinates of the first
   PoseSolver solver_;
   std::array<PairFollower, 2> followers_;
   std::array<View, 2> views_;
@@ -211,14 +212,12 @@ class MultiPoint final : public TrackerBase {
 }  // namespace
 
 std::unique_ptr<Tracker> make_three_led(const TrackerSettings& settings) {
-  if (settings.leds.count < 3)
-    fail(ErrorKind::input,
-         "tracker three-led: {} LEDs are described but it needs three; add a third to '# leds:', or use geometric",
-         settings.leds.count);
+  VERISIM_ASSERT(settings.leds.count >= 3);
   return std::make_unique<MultiPoint>(settings, "three-led", 1);
 }
 
 std::unique_ptr<Tracker> make_stereo(const TrackerSettings& settings) {
+  VERISIM_ASSERT(settings.X_R1R2.has_value());
   return std::make_unique<MultiPoint>(settings, "stereo", 2);
 }
 

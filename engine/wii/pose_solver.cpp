@@ -6,7 +6,7 @@
 namespace verisim::wii {
 namespace {
 
-constexpr int kSteps = 12;
+constexpr int kIterations = 12;
 // A step of a hundredth of the pose's own standard deviation changes nothing that is known. (A limit in metres would
 // wait for directions that hardly anything determines.)
 constexpr double kConverged = 1e-4;
@@ -30,7 +30,7 @@ struct PoseSolver::Normal {
 
 PoseSolver::PoseSolver(const TrackerSettings& settings)
     : pinhole_(settings.fov), weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)) {
-  const Pose X_R2R1 = settings.X_R1R2.inverse();
+  const Pose X_R2R1 = settings.X_R1R2.value_or(Pose()).inverse();
   R_iR_ = {Matrix3d::Identity(), X_R2R1.rotation.toRotationMatrix()};
   p_iR_ = {Vector3d::Zero(), X_R2R1.position};
 }
@@ -79,7 +79,7 @@ bool PoseSolver::accumulate(std::span<const Sighting> sightings, const Upright& 
 SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright& upright, const Pose& start) const {
   SolvedPose solved;
   solved.X_RH = start;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kIterations; ++step) {
     Normal normal;
     if (!accumulate(sightings, upright, solved.X_RH, normal)) return solved;
     const Eigen::LLT<Matrix6d> factor(normal.A);

@@ -16,17 +16,16 @@ namespace {
 constexpr double kGateSigmas = 5;
 constexpr double kPixelGate = 15;  // pixel, beside what the state's uncertainty allows
 constexpr double kPixelGateMax = 200;
-constexpr double kCoastMax = 0.1;         // s without any LED that a prediction still counts as valid
-constexpr double kForgetAfter = 1;        // s without any LED after which nothing is predicted any more
-constexpr double kSigmaMax = 0.15;        // m: less sure than this is not valid
-constexpr double kUprightTime = 1;        // s: beliefs about heads pull with this time constant where LEDs decide
-constexpr double kPinned = 1 * kDegree;   // two LEDs: yaw and pitch are held, not estimated; see report()
-constexpr double kOverturned = -0.2;      // R_LH(1,1): nobody's head
-constexpr int kPatience = 3;              // reports in which visible blobs do not fit before the head is sought anew
-constexpr double kSizeSigma = 0.5;        // of a blob's size, which is a whole number
-constexpr double kSizeRepeats = 50;       // reports that show the same rounding error
-constexpr double kSizeLearning = 0.02;    // per report: the LEDs' brightness changes with their cells, slowly
-constexpr double kRoundingPixels = 0.29;  // 1 / sqrt(12): a head at rest does not average its rounding errors away
+constexpr double kCoastMax = 0.1;        // s without any LED that a prediction still counts as valid
+constexpr double kForgetAfter = 1;       // s without any LED after which nothing is predicted any more
+constexpr double kUprightTime = 1;       // s: beliefs about heads pull with this time constant where LEDs decide
+constexpr double kPinned = 1 * kDegree;  // two LEDs: yaw and pitch are held, not estimated; see report()
+constexpr double kOverturned = -0.2;     // R_LH(1,1): nobody's head
+constexpr int kPatience = 3;             // reports in which visible blobs do not fit before the head is sought anew
+constexpr double kSizeSigma = 0.5;       // of a blob's size, which is a whole number
+constexpr double kSizeRepeats = 50;      // reports that show the same rounding error
+constexpr double kBrightnessLearning = 0.02;  // per report: the LEDs' brightness changes with their cells, slowly
+constexpr double kRoundingPixels = 0.29;      // 1 / sqrt(12): a head at rest does not average its rounding errors away
 
 class Scaat final : public TrackerBase {
  public:
@@ -140,7 +139,7 @@ class Scaat final : public TrackerBase {
                     kSizeSigma * kSizeSigma * kSizeRepeats, kGateSigmas);
   }
   void learn_size(const Blob& blob) {
-    size_at_1m_ += kSizeLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
+    size_at_1m_ += kBrightnessLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
   }
 
   /// Entries (2,0) and (2,1) of R_LH are -yaw and pitch. Two LEDs see neither: both are held at zero and accounted for
@@ -216,7 +215,7 @@ class Scaat final : public TrackerBase {
     result.covariance += unaveraged(result.pose);
     result.known = true;
     result.usable = (seen > 0 || t - t_seen_ <= kCoastMax) &&
-                    result.covariance.diagonal().head<3>().maxCoeff() < kSigmaMax * kSigmaMax &&
+                    result.covariance.diagonal().head<3>().maxCoeff() < kValidSigmaMax * kValidSigmaMax &&
                     filter_.X_RH().position.z() > 0;
   }
 

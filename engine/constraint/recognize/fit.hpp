@@ -85,7 +85,17 @@ template <typename A, typename B>
   return c;
 }
 
-/// The same with a pin and a hole: sets which is which, and the clearance.
+/// The same with a plane as b: unilateral, with the plane's normal.
+template <typename A>
+[[nodiscard]] inline Constraint on_plane(const Bounded<A>& a, const Bounded<Plane>& b, ConstraintKind kind,
+                                         Pairing pairing) {
+  Constraint c = between(a, b, kind, pairing, NormalField::constant);
+  c.normal_source = Side::b;
+  c.unilateral = true;
+  return c;
+}
+
+/// Two sides with a pin and a hole: sets which is which, and the clearance.
 template <typename A, typename B>
 [[nodiscard]] inline Constraint pin_in_hole(const Bounded<A>& a, const Bounded<B>& b, ConstraintKind kind,
                                             Pairing pairing, NormalField field) {

@@ -19,10 +19,7 @@ struct LinePlane {
   }
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
-    Constraint c = recognizing::between(a, b, kKind, Pairing::axis_plane, NormalField::constant);
-    c.normal_source = Side::b;
-    c.unilateral = true;
-    return c;
+    return recognizing::on_plane(a, b, kKind, Pairing::axis_plane);
   }
 };
 

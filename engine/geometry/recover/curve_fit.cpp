@@ -11,7 +11,7 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 constexpr double kParallel = 1 - 1e-8;       // cosine
 constexpr std::size_t kCirclePointsMin = 4;  // any three points lie on a circle
 constexpr double kSlack = 3;                 // tolerances: the intersection of two surfaces is off where both are

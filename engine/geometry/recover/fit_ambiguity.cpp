@@ -17,7 +17,7 @@ constexpr std::size_t kPlacesMin = 5;
 constexpr std::array<std::size_t, 5> kPointsMin = {3, 8, 8, 9, 14};
 constexpr double kEqualStep = 0.02;  // relative
 constexpr double kSagittaMin = 50;   // tolerances off the best plane: flatter points fit any kind
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 
 /// Angles on a circle that are at least `apart` from each other [rad], ascending, the widest gap before the first.
 std::vector<double> distinct_angles(std::vector<double> angles, double apart) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<std::size_t, 4> kRingSizes = {2, 3, 6, 12};  // k
 constexpr int kStripSteps = 4;                                    // facets of a strip to each side
-constexpr double kParallel = 0.7;                                 // cosine
+constexpr double kSideParallel = 0.7;                             // cosine
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::vector<Neighborhoods::Strip> Neighborhoods::strips(std::uint32_t facet) con
   for (const bool across : {false, true}) {
     Strip strip = {facet};
     for (const FacetSide& side : sides) {
-      const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > kParallel;
+      const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > kSideParallel;
       if (side.smooth && is_parallel != across) extend_strip(facet, &side, strip);
     }
     std::ranges::sort(strip);
