@@ -9,38 +9,38 @@ namespace verisim {
 namespace {
 
 template <auto member>
-Figure::Value get(const RunFigures& run) {
+RunFigure::Value get(const RunFigures& run) {
   return run.*member;
 }
 
 constexpr std::array kFigures = {
-    Figure{"scenario", "", "file name of the scenario", get<&RunFigures::scenario>},
-    Figure{"run_file", "", "where the run is recorded", get<&RunFigures::run_file>},
-    Figure{"frames", "1", "frames computed", get<&RunFigures::frames>},
-    Figure{"simulated_s", "s", "simulated time", get<&RunFigures::simulated_s>},
-    Figure{"wall_s", "s", "wall clock from the first frame to the closed file", get<&RunFigures::wall_s>},
-    Figure{"load_s", "s", "wall clock of loading before that", get<&RunFigures::load_s>},
-    Figure{"realtime_factor", "1", "simulated time over wall clock",
-           [](const RunFigures& run) -> Figure::Value { return run.realtime_factor(); }},
-    Figure{"collision_frames", "1", "frames with a contact", get<&RunFigures::collision_frames>},
-    Figure{"overruns", "1", "frames over 1.5 time steps", get<&RunFigures::overruns>},
-    Figure{"realtime_priority", "", "the system granted real-time priority", get<&RunFigures::realtime_priority>},
-    Figure{"collisions", "1", "contacts, summed over all frames", get<&RunFigures::collisions>},
-    Figure{"cache_hits", "1", "constraint look-ups that were memoized", get<&RunFigures::cache_hits>},
-    Figure{"cache_misses", "1", "constraint look-ups that had to be recognized", get<&RunFigures::cache_misses>},
-    Figure{"null_misses", "1", "of those, the ones that led to no constraint", get<&RunFigures::null_misses>},
-    Figure{"max_force_N", "N", "largest contact force on a body", get<&RunFigures::force_max>},
-    Figure{"max_penetration_m", "m", "deepest contact", get<&RunFigures::penetration_max>},
-    Figure{"outcome", "", "the scenario's own word", get<&RunFigures::outcome>},
-    Figure{"end", "", "how the run ended", get<&RunFigures::end>},
-    Figure{"state_hash", "", "hash of every value of /state", get<&RunFigures::state_hash>},
-    Figure{"frame_ns", "ns", "wall clock of a frame", get<&RunFigures::frame_ns>},
-    Figure{"collision_frame_ns", "ns", "wall clock of a frame with contact", get<&RunFigures::collision_frame_ns>},
+    RunFigure{"scenario", "", "file name of the scenario", get<&RunFigures::scenario>},
+    RunFigure{"run_file", "", "where the run is recorded", get<&RunFigures::run_file>},
+    RunFigure{"frames", "1", "frames computed", get<&RunFigures::frames>},
+    RunFigure{"simulated_s", "s", "simulated time", get<&RunFigures::simulated_s>},
+    RunFigure{"wall_s", "s", "wall clock from the first frame to the closed file", get<&RunFigures::wall_s>},
+    RunFigure{"load_s", "s", "wall clock of loading before that", get<&RunFigures::load_s>},
+    RunFigure{"realtime_factor", "1", "simulated time over wall clock",
+           [](const RunFigures& run) -> RunFigure::Value { return run.realtime_factor(); }},
+    RunFigure{"collision_frames", "1", "frames with a contact", get<&RunFigures::collision_frames>},
+    RunFigure{"overruns", "1", "frames over 1.5 time steps", get<&RunFigures::overruns>},
+    RunFigure{"realtime_priority", "", "the system granted real-time priority", get<&RunFigures::realtime_priority>},
+    RunFigure{"collisions", "1", "contacts, summed over all frames", get<&RunFigures::collisions>},
+    RunFigure{"cache_hits", "1", "constraint look-ups that were memoized", get<&RunFigures::cache_hits>},
+    RunFigure{"cache_misses", "1", "constraint look-ups that had to be recognized", get<&RunFigures::cache_misses>},
+    RunFigure{"null_misses", "1", "of those, the ones that led to no constraint", get<&RunFigures::null_misses>},
+    RunFigure{"max_force_N", "N", "largest contact force on a body", get<&RunFigures::force_max>},
+    RunFigure{"max_penetration_m", "m", "deepest contact", get<&RunFigures::penetration_max>},
+    RunFigure{"outcome", "", "the scenario's own word", get<&RunFigures::outcome>},
+    RunFigure{"end", "", "how the run ended", get<&RunFigures::end>},
+    RunFigure{"state_hash", "", "hash of every value of /state", get<&RunFigures::state_hash>},
+    RunFigure{"frame_ns", "ns", "wall clock of a frame", get<&RunFigures::frame_ns>},
+    RunFigure{"collision_frame_ns", "ns", "wall clock of a frame with contact", get<&RunFigures::collision_frame_ns>},
 };
 
 }  // namespace
 
-std::span<const Figure> figures() {
+std::span<const RunFigure> run_figures() {
   return kFigures;
 }
 

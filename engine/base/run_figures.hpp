@@ -40,7 +40,7 @@ struct RunFigures {
 };
 
 /// One of the figures above that is a number, a text or times.
-struct Figure {
+struct RunFigure {
   using Value = std::variant<std::string, std::uint64_t, double, bool, RunFigures::Times>;
   const char* name;  ///< in JSON and /summary (INTERFACES section 1)
   const char* unit;
@@ -49,6 +49,6 @@ struct Figure {
 };
 
 /// All of them but constraints and measures, whose names are the scenario's, in the order in which JSON lists them.
-[[nodiscard]] std::span<const Figure> figures();
+[[nodiscard]] std::span<const RunFigure> run_figures();
 
 }  // namespace verisim

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using reproduce::Figure;
+
 using reproduce::Reproduction;
 using reproduce::Row;
 
@@ -54,7 +54,7 @@ reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::Run
           std::move(run.loop.block_overruns), std::move(run.loop.empty_block_overruns)};
 }
 
-ordered_json json_of(const Figure& figure) {
+ordered_json json_of(const reproduce::Figure& figure) {
   if (const auto* words = std::get_if<std::string>(&figure)) return *words;
   return std::get<double>(figure);
 }
@@ -74,7 +74,7 @@ ordered_json json_of(const Row& row) {
 }
 
 /// Every row, and every file that one of them comes from, once.
-std::string to_json(const std::vector<Row>& rows) {
+std::string json_of_rows(const std::vector<Row>& rows) {
   ordered_json j = {{"rows", ordered_json::array()}, {"runs", ordered_json::array()}};
   for (const Row& row : rows) {
     j["rows"].push_back(json_of(row));
@@ -101,7 +101,7 @@ void run_reproduce(const ReproduceOptions& o) {
     for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
     if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", watch.seconds());
   }
-  std::printf("%s%s", o.json ? to_json(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
+  std::printf("%s%s", o.json ? json_of_rows(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
 }
 
 std::vector<std::string> ids() {

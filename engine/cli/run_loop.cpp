@@ -134,7 +134,8 @@ bool was_interrupted() {
 
 void add_timing_columns(Schema& schema) {
   const Timing none;
-  for (const Column& column : declare(none).other()) schema.add(column);
+  const Columns columns = declare(none);
+  for (const Column& column : columns.other()) schema.add(column);
 }
 
 LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOptions& options) {

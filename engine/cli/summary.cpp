@@ -30,7 +30,7 @@ const char* name_of(LoopEnd end) {
   return "";
 }
 
-ordered_json json_of(const Figure::Value& value) {
+ordered_json json_of_figure(const RunFigure::Value& value) {
   if (const auto* times = std::get_if<RunFigures::Times>(&value))
     return {{"p50", times->p50}, {"p99", times->p99}, {"max", times->max}};
   return std::visit(
@@ -78,7 +78,7 @@ RunFigures figures_of(const Session& session, LoopResult& loop, const std::strin
 
 std::string to_json(const RunFigures& run) {
   ordered_json j;
-  for (const Figure& figure : figures()) j[figure.name] = json_of(figure.value(run));
+  for (const RunFigure& figure : run_figures()) j[figure.name] = json_of_figure(figure.value(run));
   j["constraints"] = ordered_json::object();
   for (const auto& [name, frames] : run.constraints) j["constraints"][name] = frames;
   j["measures"] = ordered_json::object();
@@ -128,7 +128,7 @@ std::map<std::string, Attribute> to_attributes(const RunFigures& run) {
       a[name] = value;
     }
   };
-  for (const Figure& figure : figures())
+  for (const RunFigure& figure : run_figures())
     std::visit([&](const auto& value) { add(figure.name, value); }, figure.value(run));
   for (const Measure& m : run.measures) a["measure " + m.name + " [" + m.unit + "]"] = m.value;
   return a;

@@ -34,10 +34,6 @@ inline void add(BrickMask& mask, const BrickMask& more) {
   return (mask[static_cast<std::size_t>(z)] >> (x + 8 * y) & 1) != 0;
 }
 
-inline void add(BrickMask& mask, const BrickMask& more) {
-  for (std::size_t z = 0; z < mask.size(); ++z) mask[z] |= more[z];
-}
-
 /// Calls visit(x, y, z) for every cell of the set, z slowest, x fastest.
 template <class Visit>
 void for_each_cell(const BrickMask& mask, Visit visit) {

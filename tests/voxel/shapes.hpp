@@ -134,7 +134,7 @@ inline TriangleMesh sphere(double radius, int times) {
     mesh.vertices.emplace_back(-Vector3d::Unit(axis));
   }
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int i = 0; i < times; ++i) mesh = in_four(mesh);
+  for (int i = 0; i < times; ++i) mesh = test::subdivide(mesh);
   return mapped(std::move(mesh), [&](const Vector3d& p) { return Vector3d(radius * p.normalized()); });
 }
 
