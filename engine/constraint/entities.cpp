@@ -13,7 +13,7 @@
 namespace verisim {
 namespace {
 
-constexpr std::size_t kSetsMax = 65536;  ///< that FeatureSetId can number
+constexpr std::size_t kSetsMax = 65536;  ///< ids of FeatureSetId
 
 using Range = std::array<double, 2>;
 
@@ -27,8 +27,8 @@ Role role_of(bool hole) {
   return hole ? Role::hole : Role::pin;
 }
 
-// Each sound shape with its bounds: moved to the middle of its stretch, or refused (an entity of no equation) if the
-// stretch has no size. `u`, `v` are the face's ranges, `t` the edge's.
+// Each shape with its bounds: moved to the middle of its bounded part, or replaced by OtherSurface or OtherCurve if it
+// has no size. `u`, `v` are the face's ranges, `t` the edge's.
 
 Entity bounded(Plane s, const Range& u, const Range& v) {
   if (!is_positive(half(u)) || !is_positive(half(v))) return Bounded<OtherSurface>();
@@ -75,7 +75,7 @@ Entity bounded(const OtherCurve& /*s*/, const Range& /*t*/, Role /*role*/) {
   return Bounded<OtherCurve>();
 }
 
-/// The role of the round face that an edge bounds; unknown if it bounds none, or a pin and a hole at once.
+/// The role of the curved face that an edge bounds; unknown if it bounds none, or both a pin and a hole.
 Role role_beside(const Edge& edge, std::span<const Face> faces) {
   Role role = Role::unknown;
   for (const std::uint32_t number : edge.faces) {
@@ -138,7 +138,7 @@ void EntitySets::add(std::span<const std::uint32_t> set, std::size_t sets) {
   }
 }
 
-void EntitySets::find_rounds() {
+void EntitySets::find_curved_neighbors() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::size_t id = 0; id < size(); ++id) {
     const auto members = set(static_cast<FeatureSetId>(id));
@@ -151,12 +151,12 @@ void EntitySets::find_rounds() {
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  first_round_.assign(entities_.size() + 1, 0);
+  first_neighbor_.assign(entities_.size() + 1, 0);
   for (const auto& [plane, round] : pairs) {
-    ++first_round_[plane + 1U];
-    rounds_.push_back(round);
+    ++first_neighbor_[plane + 1U];
+    neighbors_.push_back(round);
   }
-  std::partial_sum(first_round_.begin(), first_round_.end(), first_round_.begin());
+  std::partial_sum(first_neighbor_.begin(), first_neighbor_.end(), first_neighbor_.begin());
 }
 
 }  // namespace verisim

@@ -1,5 +1,5 @@
-// R1: how often the paced loop misses its millisecond in the dissertation's trial (section 8.5), and how much of that
-// is the machine's own doing: blocks of one second alternate with an empty paced loop.
+// R1: how often the paced loop misses its millisecond in the dissertation's trial (section 8.5). Blocks of one second
+// alternate with an empty paced loop, which measures the overruns of the machine alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kBlock = 1000;            ///< frames: one second
 constexpr std::uint32_t kTooLong_ns = 1'500'000;  ///< 1.5 periods, as the dissertation counts them
 
-std::vector<double> shares(const std::vector<std::uint32_t>& counts) {
+std::vector<double> overrun_fractions(const std::vector<std::uint32_t>& counts) {
   std::vector<double> result;
   for (const std::uint32_t count : counts) result.push_back(count / static_cast<double>(kBlock));
   return result;
@@ -22,13 +22,13 @@ std::vector<double> shares(const std::vector<std::uint32_t>& counts) {
 
 /// Periods over 1.5 ms: of the run, and of an empty loop second by second in turn with it.
 Row overruns_row(const TimedRun& run, const std::string& file) {
-  const std::vector<double> loaded = shares(run.block_overruns);
-  const std::vector<double> empty = shares(run.empty_block_overruns);
+  const std::vector<double> loaded = overrun_fractions(run.block_overruns);
+  const std::vector<double> empty = overrun_fractions(run.empty_block_overruns);
   if (loaded.size() < 2 || loaded.size() != empty.size())
     fail(ErrorKind::interrupted, "{}: the paced run ended before two blocks were done", file);
   std::vector<double> more;
   for (std::size_t i = 0; i < loaded.size(); ++i) more.push_back(loaded[i] - empty[i]);
-  const Estimate share = mean_of(loaded);
+  const Estimate fraction = mean_of(loaded);
   const Estimate idle = mean_of(empty);
   const Estimate difference = mean_of(more);
   const bool shows = difference.interval.first > 0;

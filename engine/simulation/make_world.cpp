@@ -161,7 +161,7 @@ void make_entities(const BodyDescription& description, const World& world, Body&
   exact::BodyOptions options;
   options.spacing = description.voxel_size;
   auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
-  if (precise->knows_anything()) body.exact = std::move(precise);
+  if (precise->has_precise_faces()) body.exact = std::move(precise);
   const auto solved =
       std::count_if(world.bodies.begin(), world.bodies.end(), [](const Body& b) { return b.exact && b.can_move; });
   if (solved > exact::ConvexStep::kBodiesMax)

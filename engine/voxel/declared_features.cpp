@@ -67,8 +67,8 @@ DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, con
     edges_.push_back(std::get<Edge>(entity));
   } else {
     faces_.push_back(std::get<Face>(entity));
-    met_.push_back(false);
-    lean_.push_back(0);
+    used_.push_back(false);
+    outwardness_.push_back(0);
   }
   return next;
 }
@@ -84,21 +84,21 @@ FeatureSetId DeclaredFeatures::add(const std::string& owner, std::span<const Ent
   return sets_.intern(places);
 }
 
-/// Adds a voxel's say about whether the face is a hole. A voxel where faces meet says little or the contrary, one on
-/// the axis of a round face nothing: every direction leads away from it.
-void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d& inward) {
+/// Adds a voxel's inward normal to the evidence for a hole. A voxel where faces meet is weak or wrong evidence, one on
+/// the axis of a round face none: every direction leads away from it.
+void DeclaredFeatures::add_normal(std::size_t face, const Vector3d& p, const Vector3d& inward) {
   const AnalyticSurface surface = *AnalyticSurface::from(faces_[face].surface);
   if (!std::isfinite(surface.curvature_bound(p, 0))) return;
   const Vector3d away = surface.side() * surface.at(p).normal;
-  lean_[face] += away.dot(inward);
+  outwardness_[face] += away.dot(inward);
   std::visit(
       [&](auto& s) {
-        if constexpr (requires { s.hole; }) s.hole = lean_[face] > 0;
+        if constexpr (requires { s.hole; }) s.hole = outwardness_[face] > 0;
       },
       faces_[face].surface);
 }
 
-/// The circle in the set that lies on the cylinder, square to its axis; null if none does.
+/// The circle in the set that lies on the cylinder, perpendicular to its axis; null if there is none.
 const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const Place> set) const {
   constexpr double kSame = 1e-9;  // m and rad: what was declared by the same numbers
   for (const Place place : set) {
@@ -111,13 +111,13 @@ const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const
   return nullptr;
 }
 
-/// Widens the face's bounds to a voxel: along an axis all of it, but up to the rim where the voxel has one; around an
-/// axis everything is taken as covered.
+/// Extends the face's bounds to a voxel. Along an axis to all of the voxel, or to the rim if its set has one. Around an
+/// axis the face is taken as closed.
 void DeclaredFeatures::extend(std::size_t face, std::span<const Place> set, const Vector3d& p, double half_side) {
   Face& f = faces_[face];
   const auto include = [&](std::array<double, 2>& range, double low, double high) {
-    range[0] = met_[face] ? std::min(range[0], low) : low;
-    range[1] = met_[face] ? std::max(range[1], high) : high;
+    range[0] = used_[face] ? std::min(range[0], low) : low;
+    range[1] = used_[face] ? std::max(range[1], high) : high;
   };
   const auto widen = [&](std::array<double, 2>& range, double at) { include(range, at - half_side, at + half_side); };
   constexpr std::array<double, 2> kAround = {0, 2 * pinned::kPi};
@@ -158,9 +158,9 @@ void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, Featur
   for (const Place place : set) {
     if (place % 2 != 0) continue;
     const std::size_t face = place / 2;
-    weigh(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
+    add_normal(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
     extend(face, set, p, 0.5 * body.voxmap.voxel_size);
-    met_[face] = true;
+    used_[face] = true;
   }
 }
 

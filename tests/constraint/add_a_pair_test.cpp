@@ -26,8 +26,8 @@ struct EllipseEllipse {
     c.pairing = Pairing::axis_axis;
     c.field = NormalField::about_line;
     c.pin = opposite(recognizing::hole_of(a.role, a.shape.major_radius, b.role, b.shape.major_radius));
-    c.guide = opposite(c.pin);
-    c.pushes_only = false;
+    c.normal_source = opposite(c.pin);
+    c.unilateral = false;
     c.a = {a.shape.center, a.shape.normal, a.shape.major_radius, a.half_length, 0};
     c.b = {b.shape.center, b.shape.normal, b.shape.major_radius, b.half_length, 0};
     c.clearance = std::abs(c.a.radius - c.b.radius);

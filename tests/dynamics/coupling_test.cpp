@@ -69,15 +69,15 @@ TEST_P(Convergence, TurnsTheBodyIntoPlaceFromNearlyHalfATurn) {
 }
 INSTANTIATE_TEST_SUITE_P(BothIntegrators, Convergence, testing::Values(step_semi_implicit, step_implicit));
 
-// The rule of coupling.hpp at all extremes that a scenario may ask for. The share is compared to a few roundings.
-TEST(CouplingShare, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
+// The rule of coupling.hpp at all extremes that a scenario may ask for. The budget used is compared to a few roundings.
+TEST(CouplingBudget, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
   for (const double mass : {1e-9, 1e-3, 1.0, 1e9})
     for (const double size : {1e-4, 0.1, 1e3})
       for (const double dt : {1e-6, 1e-3, 1.0})
         for (const double stiffness : {1e-3, 300.0, 1e12}) {
           const RigidBody body = brick(mass, size * Vector3d(1e-4, 1, 2));
           const Coupling c = make_coupling(body, dt, {stiffness, stiffness}, true);
-          ASSERT_LE(c.share, kCouplingShare * (1 + tolerance(64 * 0x1p-53)));
+          ASSERT_LE(c.budget_used, kCouplingBudget * (1 + tolerance(64 * 0x1p-53)));
           ASSERT_GT(c.stiffness, 0);
           ASSERT_LE(c.stiffness, stiffness);
           ASSERT_GT(c.angular_stiffness, 0);
@@ -89,12 +89,12 @@ TEST(CouplingShare, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
 // With the greatest stiffness that the rule allows, any body of any size comes to rest at its target; the slowest
 // rotation of a needle (principal inertias 1 : 1e6) takes the longest: w dt = 0.449 / 1000, e^-(0.449 * 100) of 1e5
 // steps.
-TEST(CouplingShare, ConvergesWhereTheRuleLimitsIt) {
+TEST(CouplingBudget, ConvergesWhereTheRuleLimitsIt) {
   for (const double mass : {1e-9, 1e9})
     for (const double dt : {1e-6, 1.0}) {
       RigidBody body = brick(mass, {1e-6, 1e-6, 0.1});
       const Coupling c = make_coupling(body, dt, {1e30, 1e30}, true);
-      ASSERT_LE(std::abs(c.share - kCouplingShare), tolerance(1e-9)) << "the rule did not limit this coupling";
+      ASSERT_LE(std::abs(c.budget_used - kCouplingBudget), tolerance(1e-9)) << "the rule did not limit this coupling";
       const CouplingTarget target = resting_at({{0.1, 0, 0}, rotation_from_vector({0.3, 0.5, -0.4})});
       for (int i = 0; i < 100000; ++i) (void)step_semi_implicit(body, held(c, body, target), dt);
       ASSERT_TRUE(body.is_finite());

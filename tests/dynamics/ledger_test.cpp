@@ -24,7 +24,7 @@ struct World {
   bool slips = false;  ///< the coupling is limited to a fraction of what the hand pulls with
 };
 
-/// What is left of one second of that world.
+/// The result of one second of that world.
 struct Outcome {
   double residual = 0;   ///< largest ever
   double turnover = 0;   ///< the energies that went through, to judge the residual against

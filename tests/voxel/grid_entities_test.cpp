@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-struct Frame {
-  explicit Frame(test::Inputs& inputs) : point(inputs.vector(3)) {
+struct Axes {
+  explicit Axes(test::Inputs& inputs) : point(inputs.vector(3)) {
     const Matrix3d m = inputs.rotation().toRotationMatrix();
     x = m.col(0), z = m.col(2);
   }
@@ -29,7 +29,7 @@ Face face_on(const Surface& surface, double v_low = 0, double v_high = 0) {
 
 /// One surface of each kind, some hardly larger than a box, some tori that meet themselves.
 Face random_face(test::Inputs& inputs, int kind) {
-  const Frame f(inputs);
+  const Axes f(inputs);
   const double r = inputs.between(0.2, 4);
   switch (kind) {
     case 0:
@@ -159,7 +159,7 @@ Edge edge_on(const Curve& curve, double from, double to) {
 }
 
 Edge random_edge(test::Inputs& inputs, int kind) {
-  const Frame f(inputs);
+  const Axes f(inputs);
   const double from = inputs.between(-3, 3), span = inputs.between(0.01, kTurn);
   if (kind == 0) return edge_on(Line{f.point, f.z}, from, from + span);
   if (kind == 1) return edge_on(Circle{f.point, f.z, f.x, inputs.between(0.1, 4)}, from, from + span);

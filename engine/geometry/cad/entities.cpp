@@ -42,7 +42,7 @@ Range mirrored(const Range& r) {
   return {-r[1], -r[0]};
 }
 
-/// What a face's surface and bounds are made from.
+/// The kernel's data of a face's surface and bounds.
 struct Source {
   gp_Ax3 axes;
   bool reversed;  ///< the material's outward normal is against the surface's own (du x dv)
@@ -171,7 +171,7 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
   Edge edge;
   edge.length = round_number(unit * length_of(shape));
   const BRepAdaptor_Curve curve(shape);
-  const auto frame = [&](const gp_Ax2& axes, auto& c) {
+  const auto set_axes = [&](const gp_Ax2& axes, auto& c) {
     c.center = round_point(unit * vector(axes.Location().XYZ()));
     c.normal = round_direction(vector(axes.Direction()));
     c.x_axis = round_x_axis(vector(axes.XDirection()), c.normal);
@@ -186,7 +186,7 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
       break;
     case GeomAbs_Circle: {
       Circle circle;
-      frame(curve.Circle().Position(), circle);
+      set_axes(curve.Circle().Position(), circle);
       circle.radius = round_number(unit * curve.Circle().Radius());
       edge.curve = circle;
       edge.t_range = angles(from, to);
@@ -194,7 +194,7 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
     }
     case GeomAbs_Ellipse: {
       Ellipse ellipse;
-      frame(curve.Ellipse().Position(), ellipse);
+      set_axes(curve.Ellipse().Position(), ellipse);
       ellipse.major_radius = round_number(unit * curve.Ellipse().MajorRadius());
       ellipse.minor_radius = round_number(unit * curve.Ellipse().MinorRadius());
       edge.curve = ellipse;

@@ -49,8 +49,8 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   }
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (group_[i] == i && watched_[i]) {
-      fraction_[i] = share_within(std::max(0.0, budget), work_[i]);
-      budget -= work_[i].of(fraction_[i]);
+      fraction_[i] = passive_scale(std::max(0.0, budget), work_[i]);
+      budget -= work_[i].at(fraction_[i]);
     }
     fraction_[i] = fraction_[group_[i]];
   }

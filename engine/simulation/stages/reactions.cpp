@@ -16,7 +16,7 @@ struct SideOfLink {
 /// is of what they did to the other; where both stand still, what they would have done.
 Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& theirs) {
   const auto on = [&](const LinkSide& side, const ContactEnd& end) {
-    return acted(side.wrench, side.stiffness, side.damping, side.drift, end, world.dt);
+    return wrench_at_end(side.wrench, side.stiffness, side.damping, side.drift, end, world.dt);
   };
   if (world.moves(mine.body)) return on(mine.start, mine.end);
   if (!world.moves(theirs.body)) return mine.start.wrench;
