@@ -36,8 +36,8 @@ Row overruns_row(const TimedRun& run, const std::string& file) {
           "periods over 1.5 ms, of all frames",
           "%",
           0.124,
-          100 * share.value,
-          std::pair(100 * share.interval.first, 100 * share.interval.second),
+          100 * fraction.value,
+          std::pair(100 * fraction.interval.first, 100 * fraction.interval.second),
           fmt::format("{} real-time priority; an empty paced loop on this machine, second by second in turn: {:.3g} % "
                       "[{:.3g}, {:.3g}]; the difference {:+.3g} % [{:+.3g}, {:+.3g}] is {}",
                       run.realtime_priority ? "with" : "without", 100 * idle.value, 100 * idle.interval.first,

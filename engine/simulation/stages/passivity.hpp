@@ -21,7 +21,7 @@ class Passivity {
   void bound(const World& world, const Contacts& contacts, const PairMethods& methods, const Response& response,
              const ExactResponse& exact, const Ledger& ledger);
   /// 0 to 1.
-  [[nodiscard]] double fraction(std::size_t body) const { return fraction_[body]; }
+  [[nodiscard]] double scale(std::size_t body) const { return scale_[body]; }
 
  private:
   [[nodiscard]] bool watch_links(const World& world, const Contacts& contacts, const PairMethods& methods);
@@ -31,7 +31,7 @@ class Passivity {
   std::vector<bool> watched_;       ///< bodies, groups by their first body
   std::vector<std::size_t> group_;  ///< of each body: the first body of its group
   std::vector<ContactWork> work_;   ///< of groups, by their first body
-  std::vector<double> fraction_;
+  std::vector<double> scale_;
 };
 
 }  // namespace verisim
