@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/error.hpp"
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/exact/feature_maker.hpp"
 
@@ -68,19 +69,23 @@ bool lies_towards(const TriangleMesh& mesh, std::span<const std::uint32_t> trian
 void set_extent(ExactEdge& made, const Edge& edge) {
   const double width = 0.5 * (edge.t_range[1] - edge.t_range[0]);
   const double center = 0.5 * (edge.t_range[0] + edge.t_range[1]);
-  if (const auto* line = std::get_if<Line>(&edge.curve)) {
-    made.extent = ExactEdge::Extent::line;
-    made.center = line->point + center * line->direction;
-    made.direction = line->direction;
-    made.half = width;
-  } else if (const auto* circle = std::get_if<Circle>(&edge.curve); circle != nullptr && width < 0.999 * pinned::kPi) {
-    made.extent = ExactEdge::Extent::arc;
-    made.center = circle->center;
-    const Vector3d y = circle->normal.cross(circle->x_axis);
-    made.direction = pinned::cos(center) * circle->x_axis + pinned::sin(center) * y;
-    made.perpendicular = pinned::cos(center) * y - pinned::sin(center) * circle->x_axis;
-    made.half = pinned::cos(width);
-  }
+  std::visit(Overloaded{[&](const Line& c) {
+                          made.extent = ExactEdge::Extent::line;
+                          made.center = c.point + center * c.direction;
+                          made.direction = c.direction;
+                          made.half = width;
+                        },
+                        [&](const Circle& c) {
+                          if (!(width < 0.999 * pinned::kPi)) return;
+                          made.extent = ExactEdge::Extent::arc;
+                          made.center = c.center;
+                          const Vector3d y = c.normal.cross(c.x_axis);
+                          made.direction = pinned::cos(center) * c.x_axis + pinned::sin(center) * y;
+                          made.perpendicular = pinned::cos(center) * y - pinned::sin(center) * c.x_axis;
+                          made.half = pinned::cos(width);
+                        },
+                        [](const Ellipse&) {}, [](const OtherCurve&) {}},
+             edge.curve);
 }
 
 /// Adds one part to a body, entity by entity.
@@ -105,8 +110,8 @@ class PartImporter {
     for (const std::uint32_t t : triangles_.of(f))
       for (const std::uint32_t v : part_.mesh.triangles[t]) face.bounds.include(part_.mesh.vertices[v]);
     if (triangles_.of(f).empty()) return;
-    face.surface = PreciseSurface::from(part_.faces[f].surface);
-    if (!face.surface || face.surface->kind() == PreciseSurface::Kind::plane) return;
+    face.surface = PreciseSurface::from(part_.faces[f]);
+    if (!face.surface || face.surface->kind() == SurfaceKind::plane) return;
     const Vector3d more = Vector3d::Constant(kSagitta * face.bounds.size().maxCoeff());
     face.bounds.min -= more;
     face.bounds.max += more;

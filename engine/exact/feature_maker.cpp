@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim::exact {
@@ -56,15 +57,14 @@ Segmentation segmentation_of(const Curve& curve, const std::array<double, 2>& t_
     const double wider = std::max(along_x, along_y);
     if (wider > 0) split_evenly(split, t_range[0], t_range[1], std::min(spacing / wider, kSegmentMax));
   };
-  if (const auto* line = std::get_if<Line>(&curve)) {
-    split.origin = line->point;
-    split.x = line->direction;
-    split_evenly(split, t_range[0], t_range[1], spacing);
-  } else if (const auto* circle = std::get_if<Circle>(&curve)) {
-    arc(*circle, circle->radius, circle->radius);
-  } else if (const auto* ellipse = std::get_if<Ellipse>(&curve)) {
-    arc(*ellipse, ellipse->major_radius, ellipse->minor_radius);
-  }
+  std::visit(Overloaded{[&](const Line& c) {
+                          split.origin = c.point;
+                          split.x = c.direction;
+                          split_evenly(split, t_range[0], t_range[1], spacing);
+                        },
+                        [&](const Circle& c) { arc(c, c.radius, c.radius); },
+                        [&](const Ellipse& c) { arc(c, c.major_radius, c.minor_radius); }, [](const OtherCurve&) {}},
+             curve);
   return split;
 }
 
@@ -217,16 +217,24 @@ void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) 
     f.against_round_only = round_only;
     if (!samples.empty()) add(body, f, samples);
   };
-  if (const auto* ball = std::get_if<Sphere>(&face.surface); ball != nullptr && !ball->hole) {
-    add_point(body, ball->center, ball->radius, number, {});
-  } else if (const auto* torus = std::get_if<Torus>(&face.surface); torus != nullptr && !torus->hole) {
-    add_curve(Circle{torus->center, torus->direction, torus->x_axis, torus->major_radius}, face.u_range,
-              torus->minor_radius, false);
-  } else if (const auto* pin = std::get_if<Cylinder>(&face.surface); pin != nullptr && !pin->hole) {
-    add_curve(Line{pin->point, pin->direction}, face.v_range, pin->radius, true);
-  } else if (const auto* cone = std::get_if<Cone>(&face.surface); cone != nullptr && !cone->hole) {
-    add_cone(body, *cone, face.v_range, number);
-  }
+  std::visit(
+      Overloaded{
+          [](const Plane&) {},
+          [&](const Cylinder& s) {
+            if (!s.hole) add_curve(Line{s.point, s.direction}, face.v_range, s.radius, true);
+          },
+          [&](const Cone& s) {
+            if (!s.hole) add_cone(body, s, face.v_range, number);
+          },
+          [&](const Sphere& s) {
+            if (!s.hole) add_point(body, s.center, s.radius, number, {});
+          },
+          [&](const Torus& s) {
+            if (s.hole) return;
+            add_curve(Circle{s.center, s.direction, s.x_axis, s.major_radius}, face.u_range, s.minor_radius, false);
+          },
+          [](const OtherSurface&) {}},
+      face.surface);
 }
 
 namespace {

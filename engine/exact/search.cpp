@@ -76,7 +76,7 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   const Feature& feature = pair_.mover.features[block.feature];
   const PreciseSurface& surface = *pair_.base.faces[face].surface;
   if (feature.against_round_only && !surface.is_convex()) return;
-  if (surface.kind() == PreciseSurface::Kind::plane && is_back_facing(block, surface.axis())) return;
+  if (surface.kind() == SurfaceKind::plane && is_back_facing(block, surface.axis())) return;
   const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
                              motion.R * feature.y};
   const CurveFromSurface curve = pair_.seen_from(surface, placed, motion.free_twist);

@@ -43,7 +43,7 @@ TEST(Coupling, IsCriticallyDamped) {
 // Released at rest 10 mm from its target, a critically damped body follows d0 (1 + w t) e^(-w t). Both integrators are
 // of first order: their error is bounded by a constant times w dt d0, here 1e-2 d0 * 0.5 (0.37 is the largest slope in
 // w t).
-class Convergence : public testing::TestWithParam<StepWork (*)(RigidBody&, const Loads&, double)> {};
+class Convergence : public testing::TestWithParam<StepWork (*)(RigidBody&, const Loads&, double, double)> {};
 TEST_P(Convergence, FollowsTheClosedFormWithoutOvershoot) {
   const double dt = 1e-3, d0 = 0.01, w = 10;  // w = sqrt(k/m)
   RigidBody body = brick(2, {0.1, 0.2, 0.3});
@@ -51,7 +51,7 @@ TEST_P(Convergence, FollowsTheClosedFormWithoutOvershoot) {
   body.p_WC = {-d0, 0, 0};
   double worst = 0;
   for (int i = 1; i <= 3000; ++i) {
-    (void)GetParam()(body, held(c, body, resting_at({})), dt);
+    (void)GetParam()(body, held(c, body, resting_at({})), dt, 1);
     const double t = i * dt, expected = -d0 * (1 + w * t) * std::exp(-w * t);
     worst = std::max(worst, std::abs(body.p_WC.x() - expected));
     ASSERT_LE(body.p_WC.x(), tolerance(1e-15)) << "overshoot in frame " << i;
@@ -63,7 +63,7 @@ TEST_P(Convergence, TurnsTheBodyIntoPlaceFromNearlyHalfATurn) {
   RigidBody body = brick(0.2, {0.1, 0.2, 0.3});
   const Coupling c = make_coupling(body, 1e-3, {300, 0.1}, true);
   const CouplingTarget target = resting_at({{0, 0, 0}, rotation_from_vector({1.5, -2, 1.5})});
-  for (int i = 0; i < 4000; ++i) (void)GetParam()(body, held(c, body, target), 1e-3);
+  for (int i = 0; i < 4000; ++i) (void)GetParam()(body, held(c, body, target), 1e-3, 1);
   EXPECT_LE(vector_from_rotation(target.R_WB * body.R_WB.conjugate()).norm(), tolerance(1e-9));
   EXPECT_LE(body.omega.norm(), tolerance(1e-8));
 }
@@ -128,7 +128,7 @@ TEST(CouplingForce, IsCutToItsLimits) {
     RigidBody body = brick(2, {1, 2, 3});
     const Coupling c = make_coupling(body, 1e-3, limits, true);
     const CouplingTarget target = resting_at({{0.3, 0.4, 0}, rotation_from_vector({0, 0, 1.5})});
-    const StepWork work = step(body, held(c, body, target), 1e-3);
+    const StepWork work = step(body, held(c, body, target), 1e-3, 1);
     EXPECT_LE((work.coupling.force - Vector3d(1.2, 1.6, 0)).norm(), tolerance(1e-13));
     EXPECT_LE((work.coupling.torque - Vector3d(0, 0, 0.004)).norm(), tolerance(1e-16));
     EXPECT_LE((body.v_C - 1e-3 / 2 * Vector3d(1.2, 1.6, 0)).norm(), tolerance(1e-15));

@@ -156,7 +156,12 @@ Face face_from(const TopoDS_Face& shape, double unit) {
       s.axes = surface.Torus().Position();
       set_torus(face, s, surface.Torus().MajorRadius(), surface.Torus().MinorRadius());
       break;
-    default:
+    case GeomAbs_BezierSurface:
+    case GeomAbs_BSplineSurface:
+    case GeomAbs_SurfaceOfRevolution:
+    case GeomAbs_SurfaceOfExtrusion:
+    case GeomAbs_OffsetSurface:
+    case GeomAbs_OtherSurface:
       face.surface = OtherSurface{};
   }
   return face;
@@ -196,7 +201,12 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
       edge.t_range = angles(from, to);
       break;
     }
-    default:
+    case GeomAbs_Hyperbola:
+    case GeomAbs_Parabola:
+    case GeomAbs_BezierCurve:
+    case GeomAbs_BSplineCurve:
+    case GeomAbs_OffsetCurve:
+    case GeomAbs_OtherCurve:
       edge.curve = OtherCurve{};
   }
   return edge;
