@@ -27,8 +27,8 @@ Role role_of(bool hole) {
   return hole ? Role::hole : Role::pin;
 }
 
-// Each shape with its bounds: moved to the middle of its bounded part, or replaced by OtherSurface or OtherCurve if it
-// has no size. `u`, `v` are the face's ranges, `t` the edge's.
+// Each sound shape with its bounds: moved to the middle of its bounded part, or replaced by OtherSurface or OtherCurve
+// if that part has no size. `u`, `v` are the face's ranges, `t` the edge's.
 
 Entity bounded(Plane s, const Range& u, const Range& v) {
   if (!is_positive(half(u)) || !is_positive(half(v))) return Bounded<OtherSurface>();

@@ -84,8 +84,8 @@ FeatureSetId DeclaredFeatures::add(const std::string& owner, std::span<const Ent
   return sets_.intern(places);
 }
 
-/// Adds a voxel's inward normal to the evidence for a hole. A voxel where faces meet is weak or wrong evidence, one on
-/// the axis of a round face none: every direction leads away from it.
+/// Adds a voxel's inward normal to the evidence for a hole. Where faces meet, a voxel is weak or wrong evidence. On the
+/// axis of a curved face it is none: every direction leads away from it.
 void DeclaredFeatures::add_normal(std::size_t face, const Vector3d& p, const Vector3d& inward) {
   const AnalyticSurface surface = *AnalyticSurface::from(faces_[face].surface);
   if (!std::isfinite(surface.curvature_bound(p, 0))) return;

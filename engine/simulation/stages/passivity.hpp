@@ -1,7 +1,7 @@
 // The passivity controller of the contacts (dynamics/integrator.hpp): contacts that a method changed, or that appeared
 // when one was switched off, give no more energy than all contacts were given.
 //
-// Bodies that move and touch each other are one group. The same fraction acts for all of a group: what is taken from
+// Bodies that move and touch each other are one group. One scale acts for all of a group: what is taken from
 // one side of a contact is taken from the other, and momentum stays. A body that the exact response moves is alone: it
 // has all of its contacts.
 #pragma once
@@ -17,7 +17,7 @@ class Passivity {
  public:
   explicit Passivity(const World& world);
 
-  /// Finds how much of each body's contact acts in this frame.
+  /// Finds the scale of each body's contact forces in this frame.
   void bound(const World& world, const Contacts& contacts, const PairMethods& methods, const Response& response,
              const ExactResponse& exact, const Ledger& ledger);
   /// 0 to 1.
