@@ -17,7 +17,7 @@ struct RecordOptions {
 
 struct RecordedRun {
   LoopResult loop;
-  Summary summary;
+  RunFigures figures;
 };
 
 /// Runs `session` and closes the file, also if it diverged or was interrupted. Error(io) if the file cannot be made.

@@ -37,16 +37,12 @@ struct LoopResult {
 void add_timing_columns(Schema& schema);
 
 /// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may
-/// be null. `schema` is the simulation's, then the timing columns. The loop itself allocates nothing.
-[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema,
-                                  const LoopOptions& options);
+/// be null; its schema is the simulation's, then the timing columns. The loop itself allocates nothing.
+[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOptions& options);
 
 /// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
 void catch_interrupts();
 /// Whether one has asked since. For other loops than run_loop.
 [[nodiscard]] bool was_interrupted();
-
-/// The p-quantile (0 to 1) of some times, nearest rank; 0 of none. `times` is reordered.
-[[nodiscard]] std::uint32_t quantile(std::vector<std::uint32_t>& times, double p);
 
 }  // namespace verisim::cli

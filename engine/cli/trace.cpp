@@ -92,7 +92,6 @@ void add_convert(CLI::App& trace, int& exit_code) {
     std::string in, out;
     std::vector<std::string> maps;
     ConvertOptions convert;
-    bool passthrough = false;
     TraceLimits limits;
   };
   auto* command = trace.add_subcommand("convert", "A foreign CSV, or a trace in the other format, to a trace");

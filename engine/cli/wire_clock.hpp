@@ -1,7 +1,6 @@
 // The wall clock for programs on a network.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
 #include "engine/vrpn/message.hpp"
@@ -14,15 +13,5 @@ namespace verisim::cli {
 [[nodiscard]] vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds);
 /// From `begin` to `end`.
 [[nodiscard]] std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end);
-
-/// Counts seconds from its making, whatever happens to the calendar.
-class StopWatch {
- public:
-  StopWatch();
-  [[nodiscard]] double seconds() const;
-
- private:
-  std::chrono::steady_clock::time_point begin_;
-};
 
 }  // namespace verisim::cli

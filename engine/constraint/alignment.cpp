@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim {
@@ -176,6 +178,7 @@ double distance_scale(const Constraint& c, const Misalignment& m, double voxel_s
 }  // namespace
 
 Misalignment misalignment(const Constraint& constraint, const Pose& X_AB) {
+  VERISIM_ASSERT(constraint.kind != ConstraintKind::none);
   switch (constraint.pairing) {
     case Pairing::axis_axis:
       return of_axes(constraint, X_AB);
@@ -195,6 +198,8 @@ Misalignment misalignment(const Constraint& constraint, const Pose& X_AB) {
 
 double alignment(AlignmentMeasure measure, const Constraint& constraint, const Misalignment& m,
                  const AlignmentScales& scales) {
+  VERISIM_ASSERT(is_positive(scales.voxel_size));
+  VERISIM_ASSERT(is_not_negative(scales.steepness));
   if (constraint.kind == ConstraintKind::none) return 0;
   if (!std::isfinite(m.offset + m.sine + m.cosine)) return 0;
   double alpha = 0;
@@ -215,6 +220,9 @@ double alignment(AlignmentMeasure measure, const Constraint& constraint, const M
 }
 
 double wholly_beside(const Constraint& round, const Misalignment& m, const AlignmentScales& scales) {
+  VERISIM_ASSERT(round.kind != ConstraintKind::none);
+  VERISIM_ASSERT(round.pairing == Pairing::axis_axis);
+  VERISIM_ASSERT(is_positive(scales.voxel_size));
   const double apart = m.offset - round.a.radius - round.b.radius;
   return std::isfinite(apart) ? std::clamp(apart / scales.voxel_size, 0.0, 1.0) : 0;
 }

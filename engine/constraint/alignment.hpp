@@ -55,15 +55,17 @@ struct Misalignment {
 };
 
 /// @param X_AB places body B in A. Pure; about 50 ns. Zero and NaN lengths cannot occur (entities.hpp); a pose that is
-/// not finite gives members that are not finite.
+/// not finite gives members that are not finite. @pre constraint.kind is not `none`: nothing else of it means anything
 [[nodiscard]] Misalignment misalignment(const Constraint& constraint, const Pose& X_AB);
 
 /// alpha, from 0 to 1; 0 if anything is not finite. Cost: `by_type` a division, the others two pinned exp and an atan2.
+/// @pre scales.voxel_size > 0, scales.steepness >= 0, both finite
 [[nodiscard]] double alignment(AlignmentMeasure measure, const Constraint& constraint, const Misalignment& m,
                                const AlignmentScales& scales);
 
 /// Does a pin stand wholly beside its hole? From 0, while its end covers any part of the hole (the axes are nearer than
-/// both radii together), to 1, a voxel farther out. Whatever the measure; 0 if not finite.  @pre `round` is axis_axis
+/// both radii together), to 1, a voxel farther out. Whatever the measure; 0 if not finite.  @pre `round` is axis_axis;
+/// scales.voxel_size > 0
 [[nodiscard]] double wholly_beside(const Constraint& round, const Misalignment& m, const AlignmentScales& scales);
 
 }  // namespace verisim

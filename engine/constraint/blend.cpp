@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -161,10 +164,19 @@ Pose moved(const Pose& pose, const Vector3d& center, const Vector3d& way, const 
 
 ConstraintForce constraint_force(std::span<const Engaged> engaged, const Pose& X_AB, const Vector3d& center,
                                  const BlendParameters& parameters) {
+  VERISIM_ASSERT(is_not_negative(parameters.stiffness));
+  VERISIM_ASSERT(is_not_negative(parameters.angular_stiffness));
+  VERISIM_ASSERT(is_positive(parameters.length));
   ConstraintForce result;
   result.X_AB_target = X_AB;
   if (engaged.empty()) return result;
-  for (const Engaged& e : engaged) result.alpha = std::max(result.alpha, e.alpha);
+  VERISIM_ASSERT(is_placement(X_AB));
+  VERISIM_ASSERT(is_finite(center));
+  for (const Engaged& e : engaged) {
+    VERISIM_ASSERT(e.constraint != nullptr);
+    VERISIM_ASSERT(is_fraction(e.alpha));
+    result.alpha = std::max(result.alpha, e.alpha);
+  }
 
   for (; result.steps < parameters.steps_max; ++result.steps) {
     Rows rows(result.X_AB_target * center, parameters.length);
@@ -182,6 +194,7 @@ ConstraintForce constraint_force(std::span<const Engaged> engaged, const Pose& X
 }
 
 Wrench blended(const Wrench& collision, const Wrench& constraint, double alpha) {
+  VERISIM_ASSERT(is_fraction(alpha));
   return {(1 - alpha) * collision.force + alpha * constraint.force,
           (1 - alpha) * collision.torque + alpha * constraint.torque};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/constraint/restore_run.hpp"
 
 namespace verisim {
@@ -29,12 +31,14 @@ ConstraintLink::ConstraintLink(const EntitySets& a, const EntitySets& b, const C
       memo_(a, b, options.reduction, options.tolerances, options.limits),
       in_frame_(memo_.constraints_max()),
       holdings_(memo_.candidates_max()) {
+  VERISIM_ASSERT(is_positive(options.scales.voxel_size));
   engaged_.reserve(memo_.constraints_max());
 }
 
 void ConstraintLink::begin_frame(const Pose& X_AB) {
   X_AB_ = X_AB;
   pose_is_finite_ = X_AB.position.allFinite() && X_AB.rotation.coeffs().allFinite();
+  VERISIM_ASSERT(!pose_is_finite_ || is_unit(X_AB.rotation));
   ++stamp_;
   engaged_.clear();
 }
@@ -111,6 +115,8 @@ void ConstraintLink::restore_under(const Holding& h, const ContactColumns& c, st
 /// the hits that it is.
 template <bool restore_forces>
 RestoreResult ConstraintLink::walk(const ContactColumns& c) {
+  VERISIM_ASSERT(c.size == 0 || c.set_a != nullptr);
+  VERISIM_ASSERT(c.size == 0 || c.set_b != nullptr);
   RestoreResult result;
   const std::uint64_t misses_before = memo_.counts().misses();
   for (std::uint32_t begin = 0, end = 0; begin < c.size; begin = end) {
@@ -136,7 +142,11 @@ RestoreResult ConstraintLink::walk(const ContactColumns& c) {
 }
 
 RestoreResult ConstraintLink::restore_contacts(const ContactColumns& contacts) {
-  return walk<true>(contacts);
+  const ContactColumns& c = contacts;
+  VERISIM_ASSERT(c.size == 0 || (c.x != nullptr && c.y != nullptr && c.z != nullptr));
+  VERISIM_ASSERT(c.size == 0 || (c.fx != nullptr && c.fy != nullptr && c.fz != nullptr));
+  VERISIM_ASSERT(is_finite(c.origin));
+  return walk<true>(c);
 }
 RestoreResult ConstraintLink::look_up_contacts(const ContactColumns& contacts) {
   return walk<false>(contacts);

@@ -61,21 +61,23 @@ struct Engaged {
 
 class ConstraintLink {
  public:
-  /// Both must outlive the link.
+  /// Both must outlive the link. @pre options.scales.voxel_size > 0
   ConstraintLink(const EntitySets& a, const EntitySets& b, const ConstraintOptions& options = {});
 
   /// Forgets what depended on the last pose. A pose that is not finite engages nothing in this frame.
+  /// @pre the rotation is unit, if finite
   void begin_frame(const Pose& X_AB);
 
   /// Looks every contact up and restores its force in place. About 5 ns a contact; per constraint met, 100 ns a frame.
+  /// @pre no column is null, unless there are no contacts; the origin is finite
   RestoreResult restore_contacts(const ContactColumns& contacts);
   /// The same look-ups with forces left alone (fx, fy, fz may be null): for comparators and statistics.
+  /// @pre the columns of sets are not null, unless there are no contacts
   RestoreResult look_up_contacts(const ContactColumns& contacts);
 
   /// What the contacts looked up in this frame stand under, in the order of first meeting. Valid until begin_frame.
   [[nodiscard]] std::span<const Engaged> engaged() const { return engaged_; }
   [[nodiscard]] const MemoCounts& counts() const { return memo_.counts(); }
-  [[nodiscard]] const ConstraintMemo& memo() const { return memo_; }
 
  private:
   /// Pose-dependent state of one constraint; of this frame if the stamp is.

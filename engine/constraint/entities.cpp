@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 
@@ -11,19 +12,9 @@ namespace verisim {
 namespace {
 
 constexpr std::size_t kSetsMax = 65536;  ///< that FeatureSetId can number
-constexpr double kDeclaredHalf = 0.5;    ///< m to each side of a plane or line of which nothing else is known
 
 using Range = std::array<double, 2>;
 
-bool finite(const Vector3d& v) {
-  return v.allFinite();
-}
-bool unit(const Vector3d& v) {
-  return std::abs(v.squaredNorm() - 1) < 1e-6;
-}
-bool positive(double x) {
-  return std::isfinite(x) && x > 0;
-}
 double middle(const Range& range) {
   return (range[0] + range[1]) / 2;
 }
@@ -38,34 +29,34 @@ Role role_of(bool hole) {
 // size. `u`, `v` are the face's ranges, `t` the edge's.
 
 Entity bounded(Plane s, const Range& u, const Range& v) {
-  if (!finite(s.point) || !unit(s.normal) || !unit(s.x_axis)) return Bounded<OtherSurface>();
-  if (!positive(half(u)) || !positive(half(v))) return Bounded<OtherSurface>();
+  if (!is_finite(s.point) || !is_unit(s.normal) || !is_unit(s.x_axis)) return Bounded<OtherSurface>();
+  if (!is_positive(half(u)) || !is_positive(half(v))) return Bounded<OtherSurface>();
   s.point += middle(u) * s.x_axis + middle(v) * s.normal.cross(s.x_axis);
   return Bounded<Plane>{s, std::min(half(u), half(v))};
 }
 Entity bounded(Cylinder s, const Range& /*u*/, const Range& v) {
-  if (!finite(s.point) || !unit(s.direction)) return Bounded<OtherSurface>();
-  if (!positive(s.radius) || !positive(half(v))) return Bounded<OtherSurface>();
+  if (!is_finite(s.point) || !is_unit(s.direction)) return Bounded<OtherSurface>();
+  if (!is_positive(s.radius) || !is_positive(half(v))) return Bounded<OtherSurface>();
   s.point += middle(v) * s.direction;
   return Bounded<Cylinder>{s, half(v), 0, role_of(s.hole)};
 }
 Entity bounded(Cone s, const Range& /*u*/, const Range& v) {
   constexpr double kSteepest = 1.5707;  // just under pi/2, where a cone becomes a plane
-  if (!finite(s.point) || !unit(s.direction)) return Bounded<OtherSurface>();
-  if (!std::isfinite(s.radius) || s.radius < 0 || !positive(half(v))) return Bounded<OtherSurface>();
-  if (!positive(s.half_angle) || s.half_angle >= kSteepest) return Bounded<OtherSurface>();
+  if (!is_finite(s.point) || !is_unit(s.direction)) return Bounded<OtherSurface>();
+  if (!std::isfinite(s.radius) || s.radius < 0 || !is_positive(half(v))) return Bounded<OtherSurface>();
+  if (!is_positive(s.half_angle) || s.half_angle >= kSteepest) return Bounded<OtherSurface>();
   const double tangent = pinned::tan(s.half_angle);
   s.point += middle(v) * s.direction;
   s.radius += middle(v) * tangent;
   return Bounded<Cone>{s, half(v), tangent, role_of(s.hole)};
 }
 Entity bounded(const Sphere& s, const Range& /*u*/, const Range& /*v*/) {
-  if (!finite(s.center) || !positive(s.radius)) return Bounded<OtherSurface>();
+  if (!is_finite(s.center) || !is_positive(s.radius)) return Bounded<OtherSurface>();
   return Bounded<Sphere>{s, 0, 0, role_of(s.hole)};
 }
 Entity bounded(const Torus& s, const Range& /*u*/, const Range& /*v*/) {
-  if (!finite(s.center) || !unit(s.direction)) return Bounded<OtherSurface>();
-  if (!positive(s.major_radius) || !positive(s.minor_radius)) return Bounded<OtherSurface>();
+  if (!is_finite(s.center) || !is_unit(s.direction)) return Bounded<OtherSurface>();
+  if (!is_positive(s.major_radius) || !is_positive(s.minor_radius)) return Bounded<OtherSurface>();
   return Bounded<Torus>{s, s.minor_radius, 0, role_of(s.hole)};
 }
 Entity bounded(const OtherSurface& /*s*/, const Range& /*u*/, const Range& /*v*/) {
@@ -73,18 +64,18 @@ Entity bounded(const OtherSurface& /*s*/, const Range& /*u*/, const Range& /*v*/
 }
 
 Entity bounded(Line s, const Range& t, Role role) {
-  if (!finite(s.point) || !unit(s.direction) || !positive(half(t))) return Bounded<OtherCurve>();
+  if (!is_finite(s.point) || !is_unit(s.direction) || !is_positive(half(t))) return Bounded<OtherCurve>();
   s.point += middle(t) * s.direction;
   return Bounded<Line>{s, half(t), 0, role};
 }
 Entity bounded(const Circle& s, const Range& t, Role role) {
-  if (!finite(s.center) || !unit(s.normal)) return Bounded<OtherCurve>();
-  if (!positive(s.radius) || !positive(half(t))) return Bounded<OtherCurve>();
+  if (!is_finite(s.center) || !is_unit(s.normal)) return Bounded<OtherCurve>();
+  if (!is_positive(s.radius) || !is_positive(half(t))) return Bounded<OtherCurve>();
   return Bounded<Circle>{s, s.radius, 0, role};
 }
 Entity bounded(const Ellipse& s, const Range& t, Role role) {
-  if (!finite(s.center) || !unit(s.normal) || !positive(half(t))) return Bounded<OtherCurve>();
-  if (!positive(s.major_radius) || !positive(s.minor_radius)) return Bounded<OtherCurve>();
+  if (!is_finite(s.center) || !is_unit(s.normal) || !is_positive(half(t))) return Bounded<OtherCurve>();
+  if (!is_positive(s.major_radius) || !is_positive(s.minor_radius)) return Bounded<OtherCurve>();
   return Bounded<Ellipse>{s, s.major_radius, 0, role};
 }
 Entity bounded(const OtherCurve& /*s*/, const Range& /*t*/, Role /*role*/) {
@@ -123,25 +114,6 @@ Entity entity_of(const Face& face) {
 Entity entity_of(const Edge& edge, std::span<const Face> faces) {
   return std::visit([&](const auto& curve) { return bounded(curve, edge.t_range, role_beside(edge, faces)); },
                     edge.curve);
-}
-
-Entity entity_declared(const Surface& surface) {
-  Face face;
-  face.surface = surface;
-  face.u_range = face.v_range = {-kDeclaredHalf, kDeclaredHalf};
-  if (const auto* cylinder = std::get_if<Cylinder>(&surface)) {
-    face.v_range = {-2 * cylinder->radius, 2 * cylinder->radius};
-  }
-  if (const auto* cone = std::get_if<Cone>(&surface)) face.v_range = {0, 2 * cone->radius};
-  return entity_of(face);
-}
-
-Entity entity_declared(const Curve& curve) {
-  Edge edge;
-  edge.curve = curve;
-  edge.t_range = {0, 2 * pinned::kPi};
-  if (std::holds_alternative<Line>(curve)) edge.t_range = {-kDeclaredHalf, kDeclaredHalf};
-  return entity_of(edge, {});
 }
 
 std::vector<Entity> EntitySets::entities_of(std::span<const Face> faces, std::span<const Edge> edges) {

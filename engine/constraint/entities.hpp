@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/geometry/entity.hpp"
 
 namespace verisim {
@@ -37,11 +38,6 @@ using Entity =
 /// Faces and edges as entities. O(1).
 [[nodiscard]] Entity entity_of(const Face& face);
 [[nodiscard]] Entity entity_of(const Edge& edge, std::span<const Face> faces);
-
-/// An entity declared by hand, of which no more is known than the shape (`addFeatureSet` of a scenario): a round face
-/// is taken to reach one diameter along its axis, a plane and a line half a metre to each side.
-[[nodiscard]] Entity entity_declared(const Surface& surface);
-[[nodiscard]] Entity entity_declared(const Curve& curve);
 
 /// Number of a set of entities of one part; 0 is the empty set.
 using FeatureSetId = std::uint16_t;
@@ -70,7 +66,11 @@ class EntitySets {
 
   [[nodiscard]] std::size_t size() const { return first_.size() - 1; }  ///< sets, the empty one included
   [[nodiscard]] const std::vector<Entity>& entities() const { return entities_; }
-  [[nodiscard]] const Entity& entity(std::uint32_t number) const { return entities_[number]; }
+  /// @pre number < entities().size()
+  [[nodiscard]] const Entity& entity(std::uint32_t number) const {
+    VERISIM_ASSERT(number < entities_.size());
+    return entities_[number];
+  }
   /// Entity numbers of a set; an id beyond the last is empty.
   [[nodiscard]] std::span<const std::uint32_t> set(FeatureSetId id) const {
     if (id >= size()) return {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "engine/base/contract.hpp"
 #include "engine/constraint/recognition.hpp"
 
 namespace verisim {
@@ -37,7 +38,12 @@ ConstraintMemo::ConstraintMemo(const EntitySets& a, const EntitySets& b, Reducti
       candidates_(pairs_.capacity() + 1),
       constraints_(std::min({limits.constraints, a.entities().size() * b.entities().size(), std::size_t{65535}})),
       rounds_of_(constraints_.size()),
-      rounds_(2 * constraints_.size()) {}
+      rounds_(2 * constraints_.size()) {
+  VERISIM_ASSERT(is_not_negative(tolerances.clearance_relative_max));
+  VERISIM_ASSERT(is_not_negative(tolerances.interference_max));
+  VERISIM_ASSERT(is_not_negative(tolerances.half_angle_difference_max));
+  VERISIM_ASSERT(is_not_negative(tolerances.core_relative_max));
+}
 
 std::uint32_t ConstraintMemo::recognize_sets(FeatureSetId a, FeatureSetId b) {
   const Candidates found = candidates_of(a, b);

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/constraint/constraint.hpp"
 #include "engine/constraint/entities.hpp"
 #include "engine/constraint/pair_map.hpp"
@@ -45,7 +46,7 @@ struct Candidates {
 
 class ConstraintMemo {
  public:
-  /// Both sets of sets must outlive the memo.
+  /// Both sets of sets must outlive the memo. @pre the tolerances are finite and not negative
   ConstraintMemo(const EntitySets& a, const EntitySets& b, Reduction reduction, const Tolerances& tolerances,
                  const MemoLimits& limits = {});
 
@@ -58,8 +59,16 @@ class ConstraintMemo {
     return known;
   }
 
-  [[nodiscard]] const Candidates& candidates(std::uint32_t number) const { return candidates_[number]; }
-  [[nodiscard]] const Constraint& constraint(std::uint32_t number) const { return constraints_[number]; }
+  /// @pre number < candidates_max(), as look_up gave it
+  [[nodiscard]] const Candidates& candidates(std::uint32_t number) const {
+    VERISIM_ASSERT(number < candidates_.size());
+    return candidates_[number];
+  }
+  /// @pre number < constraints_known()
+  [[nodiscard]] const Constraint& constraint(std::uint32_t number) const {
+    VERISIM_ASSERT(number < constraints_known_);
+    return constraints_[number];
+  }
   /// Numbers of the round constraints that this one, if it is planar, hands over to (reduction.hpp): one for each pair
   /// of axes. None under `exactly_one`.
   [[nodiscard]] std::span<const std::uint16_t> hands_over_to(std::uint32_t number) const {
@@ -70,7 +79,6 @@ class ConstraintMemo {
 
   [[nodiscard]] std::size_t candidates_max() const { return candidates_.size(); }  ///< numbers that may occur
   [[nodiscard]] std::size_t constraints_max() const { return constraints_.size(); }
-  [[nodiscard]] std::size_t constraints_known() const { return constraints_known_; }
 
  private:
   struct Stretch {

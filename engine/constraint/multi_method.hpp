@@ -34,20 +34,6 @@ struct TypeOf {
   using type = Shape;
 };
 
-/// The alternatives of a variant of Bounded shapes, by number.
-template <typename Variant>
-struct Shapes;
-template <typename... Shape>
-struct Shapes<std::variant<Bounded<Shape>...>> {
-  static constexpr std::size_t kCount = sizeof...(Shape);
-  template <typename Wanted>
-  static constexpr std::size_t index_of() {
-    std::size_t index = 0;
-    (void)((std::is_same_v<Wanted, Shape> || (++index, false)) || ...);
-    return index;
-  }
-};
-
 namespace recognizing {
 
 template <typename Recognizer, typename A, typename B>

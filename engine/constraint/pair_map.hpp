@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 class PairMap {
@@ -20,9 +22,13 @@ class PairMap {
   /// The value of (a, b), or kAbsent.
   [[nodiscard]] std::uint32_t find(std::uint32_t a, std::uint32_t b) const { return slots_[slot_of(a, b)].value; }
 
-  /// @pre (a, b) is absent, size() < capacity()
+  /// @pre (a, b) is absent, size() < capacity(), value is not kAbsent
   void insert(std::uint32_t a, std::uint32_t b, std::uint32_t value) {
-    slots_[slot_of(a, b)] = {key_of(a, b), value};
+    Slot& slot = slots_[slot_of(a, b)];
+    VERISIM_ASSERT(slot.value == kAbsent);
+    VERISIM_ASSERT(size_ < capacity_);
+    VERISIM_ASSERT(value != kAbsent);
+    slot = {key_of(a, b), value};
     ++size_;
   }
 

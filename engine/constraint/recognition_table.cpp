@@ -6,7 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 #include "engine/constraint/recognition.hpp"
 #include "engine/constraint/recognizers.hpp"
 
@@ -53,7 +55,7 @@ Set one_of_each(bool hole) {
   const Face cylinder{Cylinder{o, z, x, radius, hole}, {}, {}, 0, {}};
   Edge rim;
   rim.curve = Circle{o, z, x, radius};
-  rim.t_range = {0, 6.283185307179586};
+  rim.t_range = {0, pinned::kFullTurn};
   rim.faces = {0};
   return {std::get<Bounded<Circle>>(entity_of(rim, {&cylinder, 1})),
           std::get<Bounded<Cylinder>>(bounded(cylinder.surface)),
@@ -166,6 +168,8 @@ const std::array<const char*, 6>& recognizer_names() {
 }
 
 RecognitionTable measure_recognition_table(int rounds, double ms_per_row) {
+  VERISIM_ASSERT(rounds > 0);
+  VERISIM_ASSERT(is_positive(ms_per_row));
   static constexpr auto kPasses = passes(std::make_index_sequence<kMasks>());
   const Set holes = one_of_each(true);
   const Set pins = one_of_each(false);

@@ -96,6 +96,7 @@ bool hands_over(const Constraint& planar, const Constraint& round) {
 Vector3d restore_common(std::span<const ActiveConstraint* const> holding, std::span<const double> alpha,
                         const Vector3d& x, const Vector3d& f) {
   VERISIM_ASSERT(holding.size() <= kHoldingMax);
+  VERISIM_ASSERT(holding.size() == alpha.size());
   std::array<Held, kHoldingMax> held;
   std::size_t n = 0;
   for (std::size_t i = 0; i < holding.size(); ++i) n += hold(*holding[i], alpha[i], x, held[n]) ? 1U : 0U;

@@ -50,7 +50,8 @@ enum class Reduction { exactly_one, common_freedom };
 /// How many constraints may hold at one contact: three normals span everything.
 inline constexpr std::size_t kHoldingMax = 3;
 
-/// f' under all constraints of `holding` at once (common_freedom). @pre holding.size() <= kHoldingMax
+/// f' under all constraints of `holding` at once (common_freedom). @pre holding.size() <= kHoldingMax,
+/// an alpha for each
 [[nodiscard]] Vector3d restore_common(std::span<const ActiveConstraint* const> holding, std::span<const double> alpha,
                                       const Vector3d& x, const Vector3d& f);
 

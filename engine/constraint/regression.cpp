@@ -1,5 +1,6 @@
 #include "engine/constraint/regression.hpp"
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim {
@@ -25,7 +26,8 @@ Regression fit_line(std::span<const double> x, std::span<const double> y) {
     xy += (x[i] - x_mean) * (y[i] - y_mean);
     yy += (y[i] - y_mean) * (y[i] - y_mean);
   }
-  VERISIM_ASSERT(xx > 0);
+  VERISIM_ASSERT(is_positive(xx));
+  VERISIM_ASSERT(is_not_negative(yy));
   Regression line;
   line.slope = xy / xx;
   line.intercept = y_mean - line.slope * x_mean;

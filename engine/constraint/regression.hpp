@@ -11,7 +11,7 @@ struct Regression {
   double r_squared = 0;  ///< 1 - residual squares / squares about the mean; 0 if all y are equal
 };
 
-/// @pre x.size() == y.size(), at least two different x
+/// @pre x.size() == y.size(), at least two different x, all finite
 [[nodiscard]] Regression fit_line(std::span<const double> x, std::span<const double> y);
 
 }  // namespace verisim

@@ -1,5 +1,8 @@
 #include "engine/constraint/restoration.hpp"
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -24,6 +27,8 @@ Vector3d constant_normal(const Constraint& c, const Pose& X_AB) {
 }  // namespace
 
 ActiveConstraint activate(const Constraint& c, const Pose& X_AB, double alpha) {
+  VERISIM_ASSERT(is_placement(X_AB));
+  VERISIM_ASSERT(is_fraction(alpha));
   ActiveConstraint active;
   active.kind = c.kind;
   if (c.kind == ConstraintKind::none) return active;
@@ -37,6 +42,8 @@ ActiveConstraint activate(const Constraint& c, const Pose& X_AB, double alpha) {
   active.point = point_in_a(c, c.guide, X_AB);
   // A ball has no axis: that of the tube around it counts.
   active.direction = direction_in_a(c, c.pairing == Pairing::point_axis ? opposite(c.guide) : c.guide, X_AB);
+  VERISIM_ASSERT(is_finite(active.point));
+  VERISIM_ASSERT(c.field == NormalField::about_point || is_unit(active.direction));
   if (c.field == NormalField::about_cone) {
     const double tangent = c.side(c.guide).detail;
     const double cosine = 1 / std::sqrt(1 + tangent * tangent);
@@ -46,20 +53,6 @@ ActiveConstraint activate(const Constraint& c, const Pose& X_AB, double alpha) {
   }
   if (c.field == NormalField::about_ring) active.along = c.side(c.guide).radius;
   return active;
-}
-
-Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3d& x, const Vector3d& f, double alpha) {
-  ActiveConstraint axis;
-  axis.kind = ConstraintKind::cylindrical;
-  axis.field = NormalField::about_line;
-  axis.alpha = alpha;
-  axis.point = c;
-  axis.direction = v;
-  return restore(axis, x, f);
-}
-
-Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha) {
-  return restore_along(n, f, alpha, /*pushes_only=*/true);
 }
 
 }  // namespace verisim

@@ -52,6 +52,7 @@ struct ActiveConstraint {
 };
 
 /// The constraint as it stands in the pose X_AB, in coordinates A, seen by body B (which feels the forces).
+/// @pre alpha is in [0, 1]; the pose is finite and its rotation unit; so are the directions of a constraint's sides
 [[nodiscard]] ActiveConstraint activate(const Constraint& constraint, const Pose& X_AB, double alpha);
 
 /// n(x), not normalised; zero where there is none. About 20 flops, cones and rings one square root more.
@@ -78,15 +79,9 @@ struct ActiveConstraint {
   return (1 - alpha) * f + (alpha * (f_along / n_squared)) * n;
 }
 
-/// f' of one contact under one constraint. About 3 ns.
+/// f' of one contact under one constraint. About 3 ns. What it needs, activate() has asked for.
 [[nodiscard]] inline Vector3d restore(const ActiveConstraint& c, const Vector3d& x, const Vector3d& f) {
   return restore_along(normal_at(c, x), f, c.alpha, c.pushes_only);
 }
-
-/// The dissertation's two, by name. Axis through `c` along the unit vector `v`.
-[[nodiscard]] Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3d& x, const Vector3d& f,
-                                           double alpha);
-/// `n`: unit normal, from the body that feels f towards the other.
-[[nodiscard]] Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha);
 
 }  // namespace verisim

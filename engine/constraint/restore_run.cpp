@@ -1,5 +1,8 @@
 #include "engine/constraint/restore_run.hpp"
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/constraint/restore_run.cpp"
 #include "hwy/foreach_target.h"  // compiles this file once per target
@@ -96,6 +99,9 @@ HWY_EXPORT(restore_without_roots);
 }  // namespace
 
 void restore_run(const ContactRun& run, const ActiveConstraint& active) {
+  VERISIM_ASSERT(run.count == 0 || (run.x != nullptr && run.y != nullptr && run.z != nullptr));
+  VERISIM_ASSERT(run.count == 0 || (run.fx != nullptr && run.fy != nullptr && run.fz != nullptr));
+  VERISIM_ASSERT(is_fraction(active.alpha));
   if (active.field != NormalField::about_cone && active.field != NormalField::about_ring) {
     HWY_DYNAMIC_DISPATCH(restore_without_roots)(run, active);
     return;

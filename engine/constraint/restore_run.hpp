@@ -22,6 +22,7 @@ struct ContactRun {
 };
 
 /// `active`: relative to the run's origin. About 1 ns a contact; of cones and rings, whose normals take a root, 5 ns.
+/// @pre no column is null, unless the run is empty; active.alpha is in [0, 1]
 void restore_run(const ContactRun& run, const ActiveConstraint& active);
 
 }  // namespace verisim

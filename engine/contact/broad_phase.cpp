@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 struct BroadPhase::Implementation {
@@ -32,6 +35,9 @@ BroadPhase::BroadPhase(const std::vector<BroadPhaseBody>& bodies)
   const std::size_t n = bodies.size();
   self.pairs.reserve(n * (n - (n > 0 ? 1 : 0)) / 2);
   for (std::size_t i = 0; i < n; ++i) {
+    VERISIM_ASSERT(is_finite(bodies[i].center_B));
+    VERISIM_ASSERT(is_finite(bodies[i].half_B));
+    VERISIM_ASSERT(bodies[i].half_B.minCoeff() >= 0);
     const Vector3d side = 2 * bodies[i].half_B;
     auto object = std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(side.x(), side.y(), side.z()));
     object->setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
@@ -46,6 +52,8 @@ BroadPhase::BroadPhase(const std::vector<BroadPhaseBody>& bodies)
 BroadPhase::~BroadPhase() = default;
 
 void BroadPhase::set_pose(std::size_t body, const Pose& X_WB) {
+  VERISIM_ASSERT(body < implementation_->objects.size());
+  VERISIM_ASSERT(is_placement(X_WB));  // the tree's search would not end
   fcl::CollisionObjectd& object = *implementation_->objects[body];
   object.setTransform(X_WB.rotation.toRotationMatrix(), X_WB * implementation_->centers[body]);
   object.computeAABB();

@@ -21,9 +21,11 @@ struct BroadPhaseBody {
 
 class BroadPhase {
  public:
+  /// @pre boxes are finite, half sides not negative
   explicit BroadPhase(const std::vector<BroadPhaseBody>& bodies);
   ~BroadPhase();
 
+  /// @pre body is one of those given to the constructor; X_WB is finite, its rotation unit
   void set_pose(std::size_t body, const Pose& X_WB);
   /// The pairs of this frame; valid until the next call.
   [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find();

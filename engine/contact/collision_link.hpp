@@ -39,28 +39,36 @@ struct LinkSide {
   Vector6d drift = Vector6d::Zero();      ///< K times the other body's twist at this centre of mass
 };
 
+struct LinkSides {
+  LinkSide first, second;
+};
+
 class CollisionLink {
  public:
+  /// Both must outlive the link. @pre both are voxelized
   CollisionLink(const VoxelBody& first, const VoxelBody& second);
   /// From now on contacts are found by triangle against triangle, at most kMeshContactsMax.
   void find_by_triangles(const MeshTree& first, const MeshTree& second);
   static constexpr std::size_t kMeshContactsMax = 16384;
 
-  /// Detection: fills the contact list. No allocation (but by FCL).
+  /// Detection: fills the contact list. No allocation (but by FCL). @pre rotations are unit, if the poses are finite
   void query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost);
   [[nodiscard]] ContactList& contacts() { return contacts_; }
   [[nodiscard]] const ContactList& contacts() const { return contacts_; }
 
+  // Of both parts: @pre dt is finite and above 0; stiffness_max and damping_ratio are finite and not negative; inverse
+  // masses are symmetric. Where there is no contact, nothing is asked.
+
   /// Response, part one: stiffness by the stability rule and a penalty force for every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
-  /// Response, part two: sums what the contacts' forces now are; with matrices, also stiffness, damping and drift.
-  void sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices);
+  /// Response, part two: sums what the contacts' forces now are; with matrices, also stiffness, damping and drift, else
+  /// these are zero.
+  void sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices, LinkSides& sides);
   /// Both parts in one, with matrices, where all that acts on contacts has acted on their normals: no force of a single
   /// contact is kept.
-  void respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
+  void respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt,
+                       LinkSides& sides);
 
-  [[nodiscard]] const LinkSide& on_first() const { return on_first_; }
-  [[nodiscard]] const LinkSide& on_second() const { return on_second_; }
   [[nodiscard]] double depth_max() const { return depth_max_; }  ///< m
   [[nodiscard]] double stiffness() const { return stiffness_; }  ///< N/m per contact, as the rule allowed
   void clear();                                                  ///< no contact in this frame
@@ -73,7 +81,9 @@ class CollisionLink {
   void stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
   /// Of the points' body against the map's, at the centre of the points' body, axes of the map's.
   [[nodiscard]] Twist relative_twist(const LinkBody& first, const LinkBody& second) const;
-  void share_out(const LinkBody& first, const LinkBody& second, const ContactSum& total, bool with_matrices);
+  /// The sum, which is on the points' body in axes of the map's, as both bodies get it.
+  void give_to_both(const LinkBody& first, const LinkBody& second, const ContactSum& total, bool with_matrices,
+                    LinkSides& sides);
 
   const Voxmap* map_;
   const Pointshell* shell_;
@@ -84,7 +94,6 @@ class CollisionLink {
   Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
   Vector3d about_ = Vector3d::Zero();
   double stiffness_ = 0, damping_ = 0, depth_max_ = 0;
-  LinkSide on_first_, on_second_;
 };
 
 }  // namespace verisim

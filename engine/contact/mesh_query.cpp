@@ -8,6 +8,9 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 struct MeshTree::Implementation {
@@ -15,8 +18,10 @@ struct MeshTree::Implementation {
 };
 
 MeshTree::MeshTree(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>()) {
+  for (const Vector3d& v : mesh.vertices) VERISIM_ASSERT(is_finite(v));
   std::vector<fcl::Triangle> triangles;
   for (const auto& [a, b, c] : mesh.triangles) {
+    VERISIM_ASSERT(std::max({a, b, c}) < mesh.vertices.size());
     const Vector3d ab = mesh.vertices[b] - mesh.vertices[a];
     const Vector3d ac = mesh.vertices[c] - mesh.vertices[a];
     // A triangle that is thinner than rounding has no plane.
@@ -74,9 +79,12 @@ std::vector<fcl::Contactd> without_depths_around_edges(const std::vector<fcl::Co
 
 }  // namespace
 
-void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts) {
+void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts,
+           QueryCost& cost) {
   contacts.size = 0;
   if (!X_AB.position.allFinite() || !X_AB.rotation.coeffs().allFinite()) return;
+  VERISIM_ASSERT(is_unit(X_AB.rotation));
+  VERISIM_ASSERT(is_finite(origin_A));
   fcl::Transform3d placed = fcl::Transform3d::Identity();
   placed.linear() = X_AB.rotation.toRotationMatrix();
   placed.translation() = X_AB.position;
@@ -88,9 +96,13 @@ void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3
   result.getContacts(found);
   found = without_depths_around_edges(found);
   std::sort(found.begin(), found.end(), comes_before);
-  for (std::size_t i = 0; i < found.size() && contacts.size < contacts.capacity(); ++i) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
     const bool is_shallowest = i == 0 || found[i].pos != found[i - 1].pos;
-    if (is_shallowest && static_cast<float>(found[i].penetration_depth) > 0) append(contacts, found[i], origin_A);
+    if (!is_shallowest || !(static_cast<float>(found[i].penetration_depth) > 0)) continue;
+    if (contacts.size < contacts.capacity())
+      append(contacts, found[i], origin_A);
+    else
+      ++cost.left_out;
   }
 }
 

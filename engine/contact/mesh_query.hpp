@@ -20,6 +20,7 @@ namespace verisim {
 /// A body's triangles with FCL's tree of oriented boxes over them; triangles without area are left out.
 class MeshTree {
  public:
+  /// @pre vertices are finite, corners are vertices
   explicit MeshTree(const TriangleMesh& mesh);
   ~MeshTree();
   MeshTree(const MeshTree&) = delete;
@@ -29,11 +30,13 @@ class MeshTree {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
   friend void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A,
-                    ContactList& contacts);
+                    ContactList& contacts, QueryCost& cost);
 };
 
 /// Fills `contacts`, sorted by place: points relative to `origin_A`, normals that push B, body coordinates of A.
-/// What goes beyond the list's capacity is left out. `point` and `slot` are the triangles' numbers in B and A.
-void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts);
+/// What goes beyond the list's capacity is left out and counted. `point` and `slot` are the triangles' numbers in B and
+/// A. @pre origin_A is finite; the rotation is unit, if the pose is finite
+void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts,
+           QueryCost& cost);
 
 }  // namespace verisim

@@ -189,6 +189,7 @@ ContactSum sum_of(const SumStrands& s) {
 }  // namespace
 
 Matrix6d contact_matrix(const ContactList& contacts, const Vector3d& about) {
+  VERISIM_ASSERT(contacts.size <= contacts.capacity());
   MatrixStrands strands;
   HWY_DYNAMIC_DISPATCH(matrix_strands)(contacts, about, strands);
   Matrix6d W;
@@ -201,12 +202,14 @@ Matrix6d contact_matrix(const ContactList& contacts, const Vector3d& about) {
 
 void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness,
                    double damping) {
+  VERISIM_ASSERT(contacts.size <= contacts.capacity());
   VERISIM_ASSERT(stiffness >= 0);
   VERISIM_ASSERT(damping >= 0);
   HWY_DYNAMIC_DISPATCH(penalty_columns)(contacts, {about, velocity, stiffness, damping});
 }
 
 ContactSum sum(const ContactList& contacts, const Vector3d& about) {
+  VERISIM_ASSERT(contacts.size <= contacts.capacity());
   SumStrands s;
   HWY_DYNAMIC_DISPATCH(sum_strands)(contacts, about, s);
   return sum_of(s);
@@ -214,6 +217,7 @@ ContactSum sum(const ContactList& contacts, const Vector3d& about) {
 
 ContactSum penalty_sum(const ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness,
                        double damping) {
+  VERISIM_ASSERT(contacts.size <= contacts.capacity());
   VERISIM_ASSERT(stiffness >= 0);
   VERISIM_ASSERT(damping >= 0);
   SumStrands s;

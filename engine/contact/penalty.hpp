@@ -14,10 +14,12 @@ namespace verisim {
 
 /// W = sum over contacts of J J^T about the point `about` (body coordinates of A relative to its grid origin), where
 /// the contacts' own coordinates live. Eight fixed strands, then a fixed tree: same bits for every SIMD target.
+/// @pre contacts.size <= contacts.capacity(), here and below: whole vectors are read, to the end of the padding
 [[nodiscard]] Matrix6d contact_matrix(const ContactList& contacts, const Vector3d& about);
 
 /// Forces f_i = max(0, k depth_i - b v_i) n_i with v_i the velocity of B's point against A along n_i (positive when
 /// leaving). `velocity` is B's relative to A: linear at `about`, angular; body coordinates of A.
+/// @pre stiffness >= 0, damping >= 0
 void apply_penalty(ContactList& contacts, const Vector3d& about, const Twist& velocity, double stiffness,
                    double damping);
 
@@ -29,6 +31,7 @@ struct ContactSum {
 [[nodiscard]] ContactSum sum(const ContactList& contacts, const Vector3d& about);
 
 /// Both in one pass where nobody acts on single forces in between: these are not kept, nor rounded to single precision.
+/// @pre stiffness >= 0, damping >= 0
 [[nodiscard]] ContactSum penalty_sum(const ContactList& contacts, const Vector3d& about, const Twist& velocity,
                                      double stiffness, double damping);
 

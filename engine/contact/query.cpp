@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/contact/query_arithmetic.hpp"
 #include "engine/contact/query_simd.hpp"
@@ -51,11 +52,14 @@ bool surely_outside(const QueryFrame& f, const ClusterFrame& c, double reach) {
   return steps_to_surface(f, c.base) - 1 >= reach;  // more steps than ceil(reach), as both sides of it are whole
 }
 
-void check(const Voxmap& a, const Pointshell& b, const ContactList& contacts) {
-  VERISIM_ASSERT(a.voxel_size > 0);
+void check(const Voxmap& a, const Pointshell& b, const Pose& X_AB, const ContactList& contacts) {
+  VERISIM_ASSERT(is_positive(a.voxel_size));
+  VERISIM_ASSERT(a.brick_block.size() == static_cast<std::size_t>(a.bricks.cast<std::int64_t>().prod()));
+  VERISIM_ASSERT(a.brick_clearance.size() == a.brick_block.size());
   VERISIM_ASSERT(a.layers.size() < (std::size_t{1} << 32));  // slots have 32 bits
   VERISIM_ASSERT(contacts.capacity() >= b.size());
   VERISIM_ASSERT(b.size() == 0 || (!b.clusters.empty() && b.clusters.back().end == b.size()));
+  VERISIM_ASSERT(is_unit(X_AB.rotation) || !X_AB.rotation.coeffs().allFinite());
 }
 
 }  // namespace
@@ -66,7 +70,7 @@ ContactList::ContactList(std::size_t capacity) {
 }
 
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
-  check(a, b, contacts);
+  check(a, b, X_AB, contacts);
   contacts.size = 0;
   const QueryFrame frame = make_query_frame(a, b, X_AB);
   const double per_metre = 1 / a.voxel_size;
@@ -88,39 +92,6 @@ void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& 
   }
   cost.candidates += append_contacts(frame, b, {batch.data(), filled}, contacts);
   cost.clusters += b.clusters.size();
-}
-
-void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
-  check(a, b, contacts);
-  contacts.size = 0;
-  const QueryFrame f = make_query_frame(a, b, X_AB);
-  for (const Pointshell::Cluster& cluster : b.clusters) {
-    ClusterFrame c;
-    place(cluster, center_of(f, cluster), c);
-    for (std::uint32_t i = c.begin; i < c.end; ++i) {
-      const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);
-      if (p.layer > 0) continue;
-      ++cost.candidates;
-      float n[3];
-      for (int r = 0; r < 3; ++r) {
-        n[r] = f.rotation[3 * r] * b.nx[i] + f.rotation[3 * r + 1] * b.ny[i] + f.rotation[3 * r + 2] * b.nz[i];
-      }
-      const float depth = depth_of(f, p, n[0], n[1], n[2]);
-      if (!(depth > 0)) continue;
-      const std::uint32_t k = contacts.size++;
-      contacts.point[k] = i;
-      contacts.slot[k] = p.slot;
-      contacts.x[k] = coordinate(f, c.base[0], p.local[0]);
-      contacts.y[k] = coordinate(f, c.base[1], p.local[1]);
-      contacts.z[k] = coordinate(f, c.base[2], p.local[2]);
-      contacts.nx[k] = n[0];
-      contacts.ny[k] = n[1];
-      contacts.nz[k] = n[2];
-      contacts.depth[k] = depth;
-    }
-  }
-  cost.clusters += b.clusters.size();
-  cost.points += b.size();
 }
 
 }  // namespace verisim

@@ -38,6 +38,20 @@ struct ContactList {                 //  unit  meaning
   static constexpr std::size_t kPadding = 16;
   explicit ContactList(std::size_t capacity = 0);
   [[nodiscard]] std::size_t capacity() const { return point.size() - kPadding; }
+
+  /// Keeps the rows i with keep(i), in their order; what has no force yet loses nothing: forces are not carried along.
+  template <typename Keep>
+  void keep_if(const Keep& keep) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      if (!keep(i)) continue;
+      point[kept] = point[i];
+      slot[kept] = slot[i];
+      for (auto* column : {&x, &y, &z, &nx, &ny, &nz, &depth}) (*column)[kept] = (*column)[i];
+      ++kept;
+    }
+    size = kept;
+  }
 };
 
 /// Deterministic work counts of a query: the same on every machine, for any SIMD target and number of threads.
@@ -45,6 +59,7 @@ struct QueryCost {
   std::uint64_t clusters = 0;    ///< clusters looked at
   std::uint64_t points = 0;      ///< points transformed and looked up
   std::uint64_t candidates = 0;  ///< points found in a voxel of layer <= 0
+  std::uint64_t left_out = 0;    ///< contacts beyond the list's capacity (mesh_query.hpp; of voxels, none)
 };
 
 /// Bytes of bodies and contacts that a query's work goes through: a cluster's record; of a point its place and the
@@ -57,12 +72,9 @@ struct QueryCost {
 
 /// Fills `contacts` (in ascending point order) and adds to `cost`. X_AB places B in A. No allocation, no lock.
 /// A pose that is not finite touches nothing. Cost: about 10 ns per cluster and 1 ns per point of those not culled.
-/// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order
+/// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order; a has a block and a clearance for
+/// every brick; the rotation is unit, if finite
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
-
-/// The same, written plainly (a loop over all points, nothing culled, no SIMD): what the fast one must equal bit for
-/// bit. Costs differ: it counts every point.
-void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
 
 /// Names of the SIMD targets compiled in and supported by this CPU, best first ("AVX3", "AVX2", "SSE4", "SSSE3" …);
 /// the last is always "scalar": the same code in portable C++ (Highway's SCALAR or EMU128).

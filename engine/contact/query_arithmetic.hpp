@@ -1,5 +1,6 @@
-// The arithmetic of a query, defined once: where a cluster and a point lie in A's grid, which voxel that is and how
-// deep. Private to this folder. Scalar; query_simd.cpp repeats `locate` and `depth_of` lane by lane in the same order.
+// The arithmetic of a query: where a cluster lies in A's grid, and what is needed to find its points' voxels. Private
+// to this folder. Scalar; query_simd.cpp goes on from here lane by lane, point by point. Its steps are written plainly,
+// in the same order, in tests/contact/query_plainly.hpp, whose bits it must equal.
 //
 // All coordinates are A's grid coordinates (voxels), split as base + 1/2 + local: `base` is the cell of the cluster's
 // centre (integer), `local` the way from that cell's centre (float, a few voxels), so nothing is lost to the size of a
@@ -7,7 +8,6 @@
 // between two voxels is given to one of them by the rounding of ties, the same one everywhere.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -46,14 +46,6 @@ struct ClusterFrame {
 /// much more in the bits.
 inline constexpr float kRounder = 0x1.8p23F;
 inline constexpr std::int32_t kRounderBits = 0x4B400000;
-
-/// A point in A's grid.
-struct PointLocation {
-  float local[3];      ///< from the centre of the cluster's base cell
-  float to_center[3];  ///< from here to the centre of its own cell
-  std::uint32_t slot;  ///< block * 512 + cell in brick, of the cell clamped to the grid
-  Layer layer;
-};
 
 inline QueryFrame make_query_frame(const Voxmap& a, const Pointshell& b, const Pose& X_AB) {
   QueryFrame f{};
@@ -132,34 +124,6 @@ inline std::int32_t brick_of(const QueryFrame& f, const std::int32_t cell[3]) {
 inline std::uint32_t slot_of(const QueryFrame& f, const std::int32_t cell[3]) {
   const std::int32_t in_brick = (cell[0] & 7) | (cell[1] & 7) << 3 | (cell[2] & 7) << 6;
   return f.brick_block[brick_of(f, cell)] << 9 | static_cast<std::uint32_t>(in_brick);
-}
-
-inline PointLocation locate(const QueryFrame& f, const ClusterFrame& c, float x, float y, float z) {
-  PointLocation p{};
-  const float dx = x - c.center[0];
-  const float dy = y - c.center[1];
-  const float dz = z - c.center[2];
-  std::int32_t cell[3];
-  for (int i = 0; i < 3; ++i) {
-    p.local[i] = f.voxels[3 * i] * dx + f.voxels[3 * i + 1] * dy + f.voxels[3 * i + 2] * dz + c.local[i];
-    const float rounded = p.local[i] + c.rounder[i];
-    p.to_center[i] = (rounded - c.rounder[i]) - p.local[i];
-    cell[i] = clamp_cell(std::bit_cast<std::int32_t>(rounded) - kRounderBits + c.corner[i], f.cell_max[i]);
-  }
-  p.slot = slot_of(f, cell);
-  p.layer = f.layers[p.slot];
-  return p;
-}
-
-/// Depth of a point in a voxel of layer <= 0 along the normal (nx, ny, nz), A's axes [m]; see query.hpp.
-inline float depth_of(const QueryFrame& f, const PointLocation& p, float nx, float ny, float nz) {
-  const float along = p.to_center[0] * nx + p.to_center[1] * ny + p.to_center[2] * nz;
-  return (along - static_cast<float>(p.layer)) * f.voxel_size;
-}
-
-/// Coordinate of a point from A's grid origin along one axis [m].
-inline float coordinate(const QueryFrame& f, std::int32_t base, float local) {
-  return ((static_cast<float>(base) + 0.5F) + local) * f.voxel_size;
 }
 
 }  // namespace verisim

@@ -30,6 +30,7 @@ class Device {
 
   [[nodiscard]] virtual const std::string& name() const = 0;
   /// Brings the device to simulated time t [s] (frame * dt). Called once a frame, in order.
+  /// @pre t is finite and not before that of the last call; dt is finite and above 0
   virtual void sample(std::uint64_t frame, double t, double dt) = 0;
   /// What sample() found; before the first one, where the device rests.
   [[nodiscard]] virtual const DeviceReading& reading() const = 0;

@@ -57,12 +57,14 @@ class TranslateDevice final : public ForwardingDevice {
 }  // namespace
 
 std::shared_ptr<Device> make_scale(std::shared_ptr<Device> inner, double scale) {
+  VERISIM_ASSERT(inner != nullptr);
   if (!std::isfinite(scale) || scale <= 0)
     fail(ErrorKind::input, "device '{}': scale is {} but must be finite and above 0", inner->name(), scale);
   return std::make_shared<ScaleDevice>(std::move(inner), scale);
 }
 
 std::shared_ptr<Device> make_translate(std::shared_ptr<Device> inner, const Vector3d& translation) {
+  VERISIM_ASSERT(inner != nullptr);
   if (!translation.allFinite()) fail(ErrorKind::input, "device '{}': translation is not finite", inner->name());
   return std::make_shared<TranslateDevice>(std::move(inner), translation);
 }

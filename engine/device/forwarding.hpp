@@ -6,13 +6,17 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/error.hpp"
 #include "engine/device/device.hpp"
 
 namespace verisim {
 
 class ForwardingDevice : public Device {
  public:
-  explicit ForwardingDevice(std::shared_ptr<Device> inner) : inner_(std::move(inner)) {}
+  /// @pre inner is not null
+  explicit ForwardingDevice(std::shared_ptr<Device> inner) : inner_(std::move(inner)) {
+    VERISIM_ASSERT(inner_ != nullptr);
+  }
   [[nodiscard]] const std::string& name() const override { return inner_->name(); }
   void sample(std::uint64_t frame, double t, double dt) override { inner_->sample(frame, t, dt); }
   [[nodiscard]] const DeviceReading& reading() const override { return inner_->reading(); }
@@ -21,10 +25,6 @@ class ForwardingDevice : public Device {
   [[nodiscard]] double duration() const override { return inner_->duration(); }
   [[nodiscard]] double travel() const override { return inner_->travel(); }
   [[nodiscard]] bool driven() const override { return inner_->driven(); }
-  [[nodiscard]] Device& inner() { return *inner_; }
-
- protected:
-  [[nodiscard]] const Device& inner() const { return *inner_; }
 
  private:
   std::shared_ptr<Device> inner_;

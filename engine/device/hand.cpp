@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/device/sources.hpp"
@@ -71,6 +72,8 @@ class HandDevice final : public Device {
   void render(const Wrench& wrench, double) override { felt_ = wrench; }
 
   void sample(std::uint64_t frame, double t, double dt) override {
+    VERISIM_ASSERT(std::isfinite(t));
+    VERISIM_ASSERT(is_positive(dt));
     if (frame > 0) {
       walk(dt);
       pull(aimed(t), dt);
@@ -210,21 +213,19 @@ void require(bool fine, const HandDescription& hand, const char* what) {
 }  // namespace
 
 std::shared_ptr<Device> make_hand(HandDescription hand) {
-  const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
-  const auto not_negative = [](double v) { return std::isfinite(v) && v >= 0; };
   require(!hand.path.empty(), hand, "path has no waypoints; give at least one");
   for (const HandWaypoint& w : hand.path) {
     require(w.pose.position.allFinite() && w.pose.rotation.coeffs().allFinite(), hand, "a waypoint is not finite");
-    require(std::abs(w.pose.rotation.squaredNorm() - 1) < 1e-6, hand, "a waypoint's rotation is not a unit quaternion");
-    require(positive(w.speed), hand, "a waypoint's speed must be finite and above 0 m/s");
-    require(not_negative(w.dwell), hand, "a waypoint's dwell must be finite and not negative");
+    require(is_unit(w.pose.rotation), hand, "a waypoint's rotation is not a unit quaternion");
+    require(is_positive(w.speed), hand, "a waypoint's speed must be finite and above 0 m/s");
+    require(is_not_negative(w.dwell), hand, "a waypoint's dwell must be finite and not negative");
   }
-  require(positive(hand.mass) && positive(hand.inertia), hand, "mass and inertia must be finite and above 0");
-  require(not_negative(hand.stiffness) && not_negative(hand.damping), hand,
+  require(is_positive(hand.mass) && is_positive(hand.inertia), hand, "mass and inertia must be finite and above 0");
+  require(is_not_negative(hand.stiffness) && is_not_negative(hand.damping), hand,
           "stiffness and damping must not be negative");
-  require(not_negative(hand.angular_stiffness) && not_negative(hand.angular_damping), hand,
+  require(is_not_negative(hand.angular_stiffness) && is_not_negative(hand.angular_damping), hand,
           "angularStiffness and angularDamping must not be negative");
-  require(not_negative(hand.tremor) && not_negative(hand.angular_tremor), hand, "tremor must not be negative");
+  require(is_not_negative(hand.tremor) && is_not_negative(hand.angular_tremor), hand, "tremor must not be negative");
   require(hand.lead > 0 && hand.patience > 0, hand, "lead and patience must be above 0");
   require(hand.error.allFinite() && hand.angular_error.allFinite(), hand, "error is not finite");
   return std::make_shared<HandDevice>(std::move(hand));

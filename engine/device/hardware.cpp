@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
-#include "engine/device/forwarding.hpp"
 
 namespace verisim {
 namespace {
@@ -45,7 +45,6 @@ class HardwareDevice final : public Device {
     return source_ ? source_->travel() + std::sqrt(3.0) * description_.resolution : 0;
   }
   [[nodiscard]] bool driven() const override { return source_ != nullptr; }
-  void set_source(std::shared_ptr<Device> source) { source_ = std::move(source); }
 
  private:
   [[nodiscard]] Vector3d quantised(const Vector3d& p) const {
@@ -89,21 +88,9 @@ std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shar
   if (!(d.force_max >= 0) || !(d.torque_max >= 0))
     fail(ErrorKind::input, "device '{}': its limits of {} N and {} N m must not be negative", d.name, d.force_max,
          d.torque_max);
-  if (!d.home.position.allFinite() || !d.home.rotation.coeffs().allFinite())
-    fail(ErrorKind::input, "device '{}': its home pose is not finite", d.name);
+  if (!is_placement(d.home))
+    fail(ErrorKind::input, "device '{}': its home pose is not finite with a unit quaternion", d.name);
   return std::make_shared<HardwareDevice>(std::move(description), std::move(source));
-}
-
-void drive(Device& device, std::shared_ptr<Device> source) {
-  Device* innermost = &device;
-  while (auto* filter = dynamic_cast<ForwardingDevice*>(innermost)) innermost = &filter->inner();
-  auto* hardware = dynamic_cast<HardwareDevice*>(innermost);
-  if (hardware == nullptr)
-    fail(ErrorKind::input, "'{}' is a source itself and cannot be driven; bind a hardware device", device.name());
-  if (hardware->driven())
-    fail(ErrorKind::input, "device '{}' is driven already by the scenario; drop the --bind or the scenario's source",
-         device.name());
-  hardware->set_source(std::move(source));
 }
 
 }  // namespace verisim

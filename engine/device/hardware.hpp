@@ -23,15 +23,13 @@ struct HardwareDescription {
 [[nodiscard]] HardwareDescription virtuose_6d(const std::string& name);
 
 /// Hardware moved by `source`; null: nothing drives it. Error(input) for a resolution or a limit that is negative or
-/// not a number, or a home pose that is not finite.
+/// not a number, or a home pose that is not finite with a unit rotation.
 [[nodiscard]] std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shared_ptr<Device> source);
 
 /// Scales positions (and so velocities) of `inner` by `scale` about the origin and forces down by it (section 4.3.1);
-/// rotations and torques stay. Error(input) unless `scale` is finite and above 0.
+/// rotations and torques stay. Error(input) unless `scale` is finite and above 0. @pre inner is not null
 [[nodiscard]] std::shared_ptr<Device> make_scale(std::shared_ptr<Device> inner, double scale);
-/// Moves handle positions by `translation`. Error(input) unless it is finite.
+/// Moves handle positions by `translation`. Error(input) unless it is finite. @pre inner is not null
 [[nodiscard]] std::shared_ptr<Device> make_translate(std::shared_ptr<Device> inner, const Vector3d& translation);
-/// Drives a hardware device made without a source. Error(input) if `device` is none or is driven already.
-void drive(Device& device, std::shared_ptr<Device> source);
 
 }  // namespace verisim

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/device/sources.hpp"
 
@@ -22,6 +24,8 @@ class ReplayDevice final : public Device {
   [[nodiscard]] const std::string& name() const override { return name_; }
 
   void sample(std::uint64_t, double t, double) override {
+    VERISIM_ASSERT(t >= last_t_);
+    last_t_ = t;
     const auto& times = samples_.t;
     while (next_ < times.size() && times[next_] <= t + kSimultaneous) ++next_;
     const std::size_t before = next_ == 0 ? 0 : next_ - 1;
@@ -48,6 +52,7 @@ class ReplayDevice final : public Device {
   std::string name_;
   HapticSamples samples_;
   std::size_t next_ = 0;  ///< first sample later than the last t: time only goes forward
+  double last_t_ = -std::numeric_limits<double>::infinity();
   double travel_ = 0;
   DeviceReading reading_;
   Wrench rendered_;
@@ -58,15 +63,15 @@ class ReplayDevice final : public Device {
 std::shared_ptr<Device> make_replay(std::string name, HapticSamples samples) {
   if (samples.t.empty()) fail(ErrorKind::input, "device '{}': its trace has no samples", name);
   VERISIM_ASSERT(samples.pose.size() == samples.t.size());
+  VERISIM_ASSERT(samples.button.empty() || samples.button.size() == samples.t.size());
   for (std::size_t i = 0; i < samples.t.size(); ++i) {
     const Pose& pose = samples.pose[i];
     if (!std::isfinite(samples.t[i]) || (i > 0 && samples.t[i] <= samples.t[i - 1]))
       fail(ErrorKind::input, "device '{}': the times of its trace do not grow at sample {}", name, i);
-    if (!pose.position.allFinite() || !(std::abs(pose.rotation.squaredNorm() - 1) < 1e-6))
+    if (!is_placement(pose))
       fail(ErrorKind::input, "device '{}': sample {} of its trace is not a finite pose with a unit quaternion", name,
            i);
   }
-  VERISIM_ASSERT(samples.button.empty() || samples.button.size() == samples.t.size());
   return std::make_shared<ReplayDevice>(std::move(name), std::move(samples));
 }
 

@@ -22,7 +22,7 @@ struct HapticSamples {               //  shape  unit
 };
 
 /// Devices.Replay{ trace= }. Error(input) for no samples, times that do not grow, poses that are not finite or not
-/// unit.
+/// unit. @pre as many poses as times, as many buttons or none
 [[nodiscard]] std::shared_ptr<Device> make_replay(std::string name, HapticSamples samples);
 
 /// One leg of an operator's target path.

@@ -3,11 +3,20 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim {
 
+void RigidBody::set_pose(const Pose& X_WB) {
+  VERISIM_ASSERT(X_WB.position.allFinite());
+  VERISIM_ASSERT(is_unit(X_WB.rotation));
+  R_WB = X_WB.rotation;
+  p_WC = X_WB * p_BC;
+}
+
 Matrix6d RigidBody::inverse_mass_matrix() const {
+  VERISIM_ASSERT(mass > 0);
   Matrix6d m = Matrix6d::Zero();
   m.topLeftCorner<3, 3>().diagonal().setConstant(1 / mass);
   m.bottomRightCorner<3, 3>() = inertia_inverse_W();
@@ -54,12 +63,16 @@ RigidBody make_body(const std::string& name, double volume, const Vector3d& cent
 }
 
 Matrix3d square_root(const Matrix3d& m) {
+  VERISIM_ASSERT(m.allFinite());
+  VERISIM_ASSERT(is_symmetric(m));
   const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(m);
   const Vector3d roots = principal.eigenvalues().cwiseMax(0).cwiseSqrt();
   return principal.eigenvectors() * roots.asDiagonal() * principal.eigenvectors().transpose();
 }
 
 double smallest_eigenvalue(const Matrix3d& m) {
+  VERISIM_ASSERT(m.allFinite());
+  VERISIM_ASSERT(is_symmetric(m));
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(m, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
 }
 

@@ -22,10 +22,8 @@ struct RigidBody {
   Vector3d omega = Vector3d::Zero();  ///< rad/s
 
   [[nodiscard]] Pose pose() const { return {p_WC - R_WB * p_BC, R_WB}; }
-  void set_pose(const Pose& X_WB) {
-    R_WB = X_WB.rotation;
-    p_WC = X_WB * p_BC;
-  }
+  /// @pre X_WB is finite, its rotation unit
+  void set_pose(const Pose& X_WB);
   [[nodiscard]] Matrix3d inertia_W() const {
     const Matrix3d R = R_WB.toRotationMatrix();
     return R * inertia_B * R.transpose();
@@ -34,7 +32,7 @@ struct RigidBody {
     const Matrix3d R = R_WB.toRotationMatrix();
     return R * inertia_inverse_B * R.transpose();
   }
-  /// M^-1 = diag(1/m, I_W^-1), world coordinates about C.
+  /// M^-1 = diag(1/m, I_W^-1), world coordinates about C. @pre mass > 0
   [[nodiscard]] Matrix6d inverse_mass_matrix() const;
   [[nodiscard]] double kinetic_energy() const;  ///< J
   [[nodiscard]] bool is_finite() const;
@@ -47,9 +45,10 @@ struct RigidBody {
                                   const Matrix3d& inertia_per_density, double density);
 
 /// The symmetric square root of a symmetric positive semidefinite matrix (for critical damping per principal axis).
+/// @pre m is finite and symmetric
 [[nodiscard]] Matrix3d square_root(const Matrix3d& m);
 
-/// The smallest eigenvalue of a symmetric matrix.
+/// The smallest eigenvalue of a symmetric matrix. @pre m is finite and symmetric
 [[nodiscard]] double smallest_eigenvalue(const Matrix3d& m);
 
 }  // namespace verisim

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -19,7 +22,14 @@ Vector3d rest_within(double sum_max, const Vector3d& spring, const Vector3d& dam
 }  // namespace
 
 Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(is_positive(body.mass));
+  VERISIM_ASSERT(is_not_negative(limits.stiffness_max));
+  VERISIM_ASSERT(is_not_negative(limits.angular_stiffness_max));
+  VERISIM_ASSERT(limits.force_max > 0);
+  VERISIM_ASSERT(limits.torque_max > 0);
   const double inertia_min = smallest_eigenvalue(body.inertia_B);
+  VERISIM_ASSERT(inertia_min > 0);
   const double x_max = std::sqrt(4 + kCouplingShare) - 2;  // x^2 + 4x = kCouplingShare
   const double bound = x_max * x_max / (dt * dt);
   Coupling c;
@@ -36,6 +46,7 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
 }
 
 CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
+  VERISIM_ASSERT(is_unit(target.R_WB));
   CouplingForce f;
   const Matrix3d R = body.R_WB.toRotationMatrix();
   f.d = target.p_WC - body.p_WC;
@@ -53,10 +64,6 @@ Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const W
 
 double coupling_energy(const Coupling& coupling, const CouplingForce& force) {
   return 0.5 * coupling.stiffness * force.d.squaredNorm() + 0.5 * coupling.angular_stiffness * force.e.squaredNorm();
-}
-
-double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
-  return coupling_energy(coupling, coupling_force(coupling, body, target));
 }
 
 }  // namespace verisim

@@ -42,6 +42,8 @@ struct Coupling {
 };
 
 /// `stabilize`: apply the stability rule (explicit forces); a linearly implicit integrator needs none.
+/// @pre dt is finite and above 0; the body has mass and inertia; stiffnesses are finite and not negative; the limits of
+/// force and torque are above 0
 [[nodiscard]] Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize);
 
 /// Where the handle wants the body, and how fast that place moves.
@@ -60,6 +62,7 @@ struct CouplingForce {
   Wrench damper;
   [[nodiscard]] Wrench total() const { return {spring.force + damper.force, spring.torque + damper.torque}; }
 };
+/// A body that a step has just made infinite has a force that is not finite either. @pre target.R_WB is unit
 [[nodiscard]] CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body,
                                            const CouplingTarget& target);
 
@@ -69,6 +72,5 @@ struct CouplingForce {
 
 /// Energy stored in the springs [J].
 [[nodiscard]] double coupling_energy(const Coupling& coupling, const CouplingForce& force);
-[[nodiscard]] double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target);
 
 }  // namespace verisim

@@ -4,8 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
+
+/// What every step asks for: see the header.
+void check(const RigidBody& body, const Loads& loads, double dt) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(body.mass > 0);
+  VERISIM_ASSERT(body.is_finite());
+  VERISIM_ASSERT(is_unit(body.R_WB));
+  VERISIM_ASSERT(is_symmetric(loads.contact_stiffness));
+  VERISIM_ASSERT(is_symmetric(loads.contact_damping));
+}
 
 /// A twist as one column (v, omega), a wrench as one column (force, torque).
 Vector6d stacked(const Vector3d& linear, const Vector3d& angular) {
@@ -85,15 +98,18 @@ ContactWork& ContactWork::operator+=(const ContactWork& other) {
 }
 
 double ContactWork::of(double share) const {
+  VERISIM_ASSERT(is_fraction(share));
   return share == 1 ? all : (quadratic * share + linear) * share;
 }
 
 double share_within(double budget, const ContactWork& work) {
+  VERISIM_ASSERT(!(budget < 0));  // of a run that diverges it may be no number at all
   if (!(work.all > budget)) return 1;
   const double a = work.quadratic;
   const double b = work.linear;
   if (!(a > 0)) return 0;
-  return std::clamp((std::sqrt(b * b + 4 * a * budget) - b) / (2 * a), 0.0, 1.0);
+  const double share = (std::sqrt(b * b + 4 * a * budget) - b) / (2 * a);
+  return share > 0 ? std::min(share, 1.0) : 0;  // nor may this be: inf - inf
 }
 
 namespace {
@@ -111,6 +127,7 @@ Wrench damper_of(const Loads& loads) {
 }  // namespace
 
 ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads, double dt) {
+  check(body, loads, dt);
   Wrench others = loads.external;
   if (loads.coupling != nullptr) others += loads.coupling_at_start.spring;
   others += damper_of(loads);
@@ -122,18 +139,19 @@ ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads
   return {quadratic + linear, quadratic, linear};
 }
 
-StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
+StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share) {
+  check(body, loads, dt);
+  VERISIM_ASSERT(is_fraction(contact_share));
   const double energy_before = potential_at_start(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
   const Wrench damper = damper_of(loads);
-  const double share = loads.contact_share;
-  const Wrench contact{share * loads.contact.force, share * loads.contact.torque};
+  const Wrench contact{contact_share * loads.contact.force, contact_share * loads.contact.torque};
   const Vector3d force = loads.external.force + contact.force + spring.force + damper.force;
   const Vector3d torque = loads.external.torque + contact.torque + spring.torque + damper.torque;
   const Vector6d u1 = stacked(body.v_C, body.omega) + sped_up(body, body.inertia_inverse_W(), {force, torque}, dt);
   const Motion motion = advance(body, u1, dt);
   StepWork work = account(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
-  work.contact_end.share = share;
+  work.contact_end.share = contact_share;
   return work;
 }
 
@@ -192,6 +210,7 @@ void assemble(const RigidBody& body, const Loads& loads, double dt, bool with_co
 }  // namespace
 
 ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt) {
+  check(body, loads, dt);
   ImplicitStep step;
   linearize(body, loads, dt, step);
   const bool touching = !loads.contact_stiffness.isZero(0) || !loads.contact_damping.isZero(0);
@@ -206,6 +225,8 @@ ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt
 
 StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
                       const Wrench& solved, double dt) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(!step.A.isZero(0));
   const double energy_before = potential_at_start(body, loads, 0);
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Wrench contact = solved;
@@ -246,20 +267,22 @@ ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, dou
           work_along(u0 + divided.free.free)};
 }
 
-StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
+StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share) {
+  VERISIM_ASSERT(is_fraction(contact_share));
   const ImplicitStep step = begin_implicit(body, loads, dt);
-  const double share = loads.contact_share;
-  if (!step.with_contact || share == 1) return end_implicit(body, loads, step, step.free, {}, dt);
+  if (!step.with_contact || contact_share == 1) return end_implicit(body, loads, step, step.free, {}, dt);
   const DividedStep divided = divide(body, loads, step, dt);
-  const ContactEnd end{share, stacked(body.v_C, body.omega), divided.with_all};
-  const Vector6d u1 = divided.free.free + share * (divided.with_all - divided.free.free);
-  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(share * divided.contact), dt);
+  const ContactEnd end{contact_share, stacked(body.v_C, body.omega), divided.with_all};
+  const Vector6d u1 = divided.free.free + contact_share * (divided.with_all - divided.free.free);
+  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(contact_share * divided.contact), dt);
   work.contact_end = end;
   return work;
 }
 
 Wrench acted(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift, const ContactEnd& end,
              double dt) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(is_fraction(end.share));
   return wrench_of(end.share * (stacked(start) + dt * (drift - K * end.u1) - D * (end.u1 - end.u0)));
 }
 

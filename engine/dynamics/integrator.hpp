@@ -22,6 +22,11 @@
 // what is taken from one side of a contact is taken from the other, and momentum stays. If w(1) exceeds the budget, the
 // s at which w(s) meets it acts. It never pulls, nor weakens what resists a motion.
 //
+// Every function below that takes a body, its loads and dt asks for this (one half of a step: for its part of it):
+// @pre dt is finite and above 0; the body has mass, and its state is finite with a unit rotation; the matrices of the
+// loads are symmetric, contact_share is in [0, 1]. Loads need not be finite: the body is not either then, and its owner
+// asks it after every step (RigidBody::is_finite).
+//
 // Rotation keeps angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then omega = I1^-1 L1.
 // Spin energy stays below |L|^2 / (2 I_min) whatever the speed: a fast needle cannot blow up.
 #pragma once
@@ -39,7 +44,6 @@ struct Loads {
   Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
   Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
   Vector6d contact_drift = Vector6d::Zero();  ///< sum of K times the twist of the other body at C: a wall that moves
-  double contact_share = 1;                   ///< 0 to 1: so much of contact acts (share_within)
   const Coupling* coupling = nullptr;         ///< null: not held
   CouplingForce coupling_at_start;
   CouplingTarget target;
@@ -51,6 +55,7 @@ struct ContactEnd {
   double share = 1;  ///< 0: it let go
   Vector6d u0 = Vector6d::Zero(), u1 = Vector6d::Zero();
 };
+/// @pre dt is finite and above 0; end.share is in [0, 1]
 [[nodiscard]] Wrench acted(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift,
                            const ContactEnd& end, double dt);
 
@@ -66,20 +71,22 @@ struct StepWork {
   ContactEnd contact_end;
 };
 
-[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt);
-[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt);
+/// `contact_share`: 0 to 1, so much of the contact acts (share_within).
+[[nodiscard]] StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share = 1);
+[[nodiscard]] StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_share = 1);
 
 /// Work [J] on a body of a contact of which the share s acts: w(s) = quadratic s^2 + linear s, and w(1), whose rounding
 /// is that of the step itself.
 struct ContactWork {
   double all = 0, quadratic = 0, linear = 0;
   ContactWork& operator+=(const ContactWork& other);
-  [[nodiscard]] double of(double share) const;
+  [[nodiscard]] double of(double share) const;  ///< @pre share is in [0, 1]
 };
 /// Of the step that these loads would make.
 [[nodiscard]] ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads, double dt);
 [[nodiscard]] ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, double dt);
-/// The share that may act: 1, without a rounding, or that at which the work meets the budget [J, >= 0].
+/// The share that may act: 1, without a rounding, or that at which the work meets the budget [J]; 0 if the work is
+/// beyond double precision. @pre budget >= 0
 [[nodiscard]] double share_within(double budget, const ContactWork& work);
 
 /// [J] of a potential whose force on the body is `force`, while steps of step_semi_implicit advance it (see above).
@@ -99,6 +106,7 @@ struct ImplicitStep {
 };
 [[nodiscard]] ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt);
 /// Moves the body with u1. `solved` is what the contacts solved in between did to it: dt solved = A u1 - b.
+/// @pre `step` comes from begin_implicit
 [[nodiscard]] StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
                                     const Wrench& solved, double dt);
 

@@ -246,6 +246,7 @@ bool ConvexStep::advance(double t) {
 }
 
 int ConvexStep::solve(double dt) {
+  finished_ = true;
   if (bodies_.empty()) return 0;
   start(dt);
   for (int i = 0; i < kIterationsMax; ++i) {
@@ -258,6 +259,7 @@ int ConvexStep::solve(double dt) {
     // With the same rows the cost is one parabola, and its Newton step ends at its minimum.
     if (same && t == 1) return i + 1;
   }
+  finished_ = false;
   return kIterationsMax;
 }
 

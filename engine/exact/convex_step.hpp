@@ -54,6 +54,8 @@ class ConvexStep {
   [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].z; }
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
   [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
+  /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.
+  [[nodiscard]] bool finished() const { return finished_; }
 
  private:
   struct Body {
@@ -87,6 +89,7 @@ class ConvexStep {
   std::vector<Row> rows_;
   std::vector<Body> bodies_;
   std::size_t left_out_ = 0;
+  bool finished_ = true;
   double inertia_cost_ = 0, inertia_slope_ = 0, inertia_bend_ = 0;  ///< of the first term along the direction
 };
 

@@ -68,7 +68,8 @@ struct Torus {
 struct OtherSurface {};
 
 using Surface = std::variant<Plane, Cylinder, Cone, Sphere, Torus, OtherSurface>;
-inline constexpr std::array<const char*, 6> kSurfaceNames = {"plane", "cylinder", "cone", "sphere", "torus", "other"};
+inline constexpr std::array kSurfaceNames = {"plane", "cylinder", "cone", "sphere", "torus", "other"};
+static_assert(kSurfaceNames.size() == std::variant_size_v<Surface>, "each kind of surface has a name");
 
 // --- curves ---------------------------------------------------------------------------------------------------------
 
@@ -98,7 +99,8 @@ struct Ellipse {
 struct OtherCurve {};
 
 using Curve = std::variant<Line, Circle, Ellipse, OtherCurve>;
-inline constexpr std::array<const char*, 4> kCurveNames = {"line", "circle", "ellipse", "other"};
+inline constexpr std::array kCurveNames = {"line", "circle", "ellipse", "other"};
+static_assert(kCurveNames.size() == std::variant_size_v<Curve>, "each kind of curve has a name");
 
 // --- topology -------------------------------------------------------------------------------------------------------
 

@@ -37,9 +37,6 @@ struct LoadOptions {
 /// wrote.
 void write_step(const std::string& path, const std::vector<std::pair<std::string, Solid>>& solids);
 
-/// Binary STL in the mesh's own units times `units_per_metre` (1000: millimetres).
-void write_stl(const std::string& path, const TriangleMesh& mesh, double units_per_metre);
-
 /// One sentence per thing that should be questioned before simulating: a part larger than 100 m or smaller than 10 um
 /// in its longest direction (a model in millimetres read as metres), with the scale that would make it plausible.
 [[nodiscard]] std::vector<std::string> questions_about(const Part& part);

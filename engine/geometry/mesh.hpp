@@ -73,7 +73,4 @@ MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes);
 /// The report alone. Self-intersections are looked for if `thorough` (n log n; CGAL).
 [[nodiscard]] MeshReport examine(const TriangleMesh& mesh, bool thorough);
 
-/// Every triangle in four at its edge midpoints; the shape is the same. Midpoints of shared edges are shared.
-[[nodiscard]] TriangleMesh subdivide(const TriangleMesh& mesh);
-
 }  // namespace verisim

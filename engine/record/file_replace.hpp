@@ -30,7 +30,6 @@ class Replacement {
   void write(const std::string& content) const;
   /// Takes the target's place. Error(io). Does nothing the second time.
   void commit();
-  [[nodiscard]] bool committed() const { return committed_; }
 
  private:
   std::string target_, path_;

@@ -17,25 +17,9 @@
 #include <variant>
 #include <vector>
 
-#include "engine/base/named_array.hpp"
+#include "engine/base/columns.hpp"
 
 namespace verisim {
-
-/// One dataset that grows with the frames.
-struct Column {
-  std::string path;  ///< "/state/body/pin/pose"
-  Dtype dtype = Dtype::f64;
-  std::size_t width = 1;  ///< 1: dataset of shape [N]; else [N, width]
-  std::string units;
-  std::string description;
-  std::size_t offset = 0;  ///< bytes from the start of the row; set by Schema::add
-  /// u8 of width 1: value i means enum_names[i] (an HDF5 enum). Otherwise names of the components (stages of /timing).
-  std::vector<std::string> enum_names;
-  /// Empty: every frame adds a row. Else the path of a u32 column of the same schema: only frames where that is not 0
-  /// add a row to this one (what runs at a rate of its own).
-  std::string due = {};
-  [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
-};
 
 /// The columns of a run, packed without padding in the order of adding; /state columns first, so that the state of a
 /// row is one run of bytes.

@@ -12,22 +12,11 @@
 
 namespace verisim {
 
-/// A parameter of a synthesizer. Units are SI.
-struct SynthParameter {
-  std::string name;
-  double value = 0;  ///< default
-  std::string units;
-  std::string description;
-};
-
 /// Names of all kinds: "sine" (sum of two sines per axis), "reach" (minimum jerk, point to point and back), "tremor"
 /// (physiological tremor around a point), "insertion" (down and up along an axis, again and again), "step" (a jump).
 [[nodiscard]] std::vector<std::string> synthesizers();
 
-/// The parameters of a kind with their defaults. Error(usage), with the nearest name, for an unknown kind.
-[[nodiscard]] std::vector<SynthParameter> synth_parameters(const std::string& kind);
-
-/// All kinds with their parameters, one line each, for --help.
+/// All kinds, and below each its parameters, one line each: name, default, unit, meaning. For --help.
 [[nodiscard]] std::string synthesizer_help();
 
 /// A haptic trace of that kind. Its `source` says kind, parameters and seed, so that it can be made again.

@@ -20,14 +20,8 @@ std::vector<double> shares(const std::vector<std::uint32_t>& counts) {
   return result;
 }
 
-}  // namespace
-
-std::vector<Row> r1_overruns(const Workshop& workshop) {
-  const std::string file = workshop.file("r1_paced.h5");
-  RunRequest request{
-      .scenario = "peg_in_hole", .file = file, .sets = {{"hybrid", "restore"}}, .paced = true, .empty_block = kBlock};
-  if (workshop.quick) request.duration = 4;
-  const RunFigures run = workshop.run(request);
+/// Periods over 1.5 ms: of the run, and of an empty loop second by second in turn with it.
+Row overruns_row(const TimedRun& run, const std::string& file) {
   const std::vector<double> loaded = shares(run.block_overruns);
   const std::vector<double> empty = shares(run.empty_block_overruns);
   if (loaded.size() < 2 || loaded.size() != empty.size())
@@ -38,8 +32,31 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
   const Estimate idle = mean_of(empty);
   const Estimate difference = mean_of(more);
   const bool shows = difference.interval.first > 0;
+  return {"R1",
+          "periods over 1.5 ms, of all frames",
+          "%",
+          0.124,
+          100 * share.value,
+          std::pair(100 * share.interval.first, 100 * share.interval.second),
+          fmt::format("{} real-time priority; an empty paced loop on this machine, second by second in turn: {:.3g} % "
+                      "[{:.3g}, {:.3g}]; the difference {:+.3g} % [{:+.3g}, {:+.3g}] is {}",
+                      run.realtime_priority ? "with" : "without", 100 * idle.value, 100 * idle.interval.first,
+                      100 * idle.interval.second, 100 * difference.value, 100 * difference.interval.first,
+                      100 * difference.interval.second,
+                      shows ? "beyond its own 95 % interval" : "within its own 95 % interval"),
+          {file}};
+}
+
+}  // namespace
+
+std::vector<Row> r1_overruns(const Workshop& workshop) {
+  const std::string file = workshop.file("r1_paced.h5");
+  RunRequest request{
+      .scenario = "peg_in_hole", .file = file, .sets = {{"hybrid", "restore"}}, .paced = true, .empty_block = kBlock};
+  if (workshop.quick) request.duration = 4;
+  const TimedRun run = workshop.run(request);
   const auto slow = static_cast<double>(
-      std::count_if(run.frame_ns.begin(), run.frame_ns.end(), [](std::uint32_t ns) { return ns > kTooLong_ns; }));
+      std::count_if(run.frame_times_ns.begin(), run.frame_times_ns.end(), [](std::uint32_t ns) { return ns > kTooLong_ns; }));
   const auto frames = static_cast<double>(run.frames);
   return {
       {"R1",
@@ -58,19 +75,7 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
        {},
        "another operator: he touches the wall more often",
        {file}},
-      {"R1",
-       "periods over 1.5 ms, of all frames",
-       "%",
-       0.124,
-       100 * share.value,
-       std::pair(100 * share.interval.first, 100 * share.interval.second),
-       fmt::format("{} real-time priority; an empty paced loop on this machine, second by second in turn: {:.3g} % "
-                   "[{:.3g}, {:.3g}]; the difference {:+.3g} % [{:+.3g}, {:+.3g}] is {}",
-                   run.realtime_priority ? "with" : "without", 100 * idle.value, 100 * idle.interval.first,
-                   100 * idle.interval.second, 100 * difference.value, 100 * difference.interval.first,
-                   100 * difference.interval.second,
-                   shows ? "beyond its own 95 % interval" : "within its own 95 % interval"),
-       {file}},
+      overruns_row(run, file),
       {"R1",
        "overruns per hundred frames with collision",
        "%",
@@ -86,7 +91,7 @@ std::vector<Row> r1_overruns(const Workshop& workshop) {
        100 * slow / frames,
        {},
        fmt::format("the slowest frame took {:.0f} us",
-                   *std::max_element(run.frame_ns.begin(), run.frame_ns.end()) / 1e3),
+                   *std::max_element(run.frame_times_ns.begin(), run.frame_times_ns.end()) / 1e3),
        {file}},
   };
 }

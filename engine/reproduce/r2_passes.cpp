@@ -34,7 +34,7 @@ Batch run_batch(const Workshop& workshop, const Fit& fit, const char* hybrid, st
                      .duration = duration};
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     request.seed = seed;
-    const RunFigures run = workshop.run(request);
+    const TimedRun run = workshop.run(request);
     const double passes = run.measure("passes");
     batch.rates.push_back(passes / run.simulated_s);
     csv += fmt::format("{},{},{},{},{},{}\n", seed, passes, run.simulated_s, run.collision_frames, run.force_max,

@@ -45,7 +45,7 @@ std::vector<Row> try_out(const Workshop& workshop, const Conflict& conflict, con
   std::uint64_t assembled = 0;
   double least = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const RunFigures run = workshop.run(
+    const TimedRun run = workshop.run(
         {.scenario = "pins", .file = run_file, .sets = {{"hybrid", hybrid}, {"kind", conflict.kind}}, .seed = seed});
     const double energy = least_lost(run_file);
     assembled += run.outcome == "assembled" ? 1 : 0;

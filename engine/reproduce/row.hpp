@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/run_figures.hpp"
+
 namespace verisim::reproduce {
 
 /// A number, or words where the result is none (R9: "does not assemble").
@@ -39,30 +41,18 @@ struct RunRequest {
   bool paced = false;             ///< by the wall clock
   std::uint64_t empty_block = 0;  ///< paced: after every so many frames as many of a loop that does nothing
 };
-/// What came of it.
-struct RunFigures {
-  std::string run_file, outcome;
-  std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
-  std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
-  double simulated_s = 0, wall_s = 0;
-  bool realtime_priority = false;                 ///< paced: the system granted it
-  std::vector<std::uint32_t> frame_ns;            ///< of every frame
-  std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
-  std::vector<std::pair<std::string, double>> measures;
+/// What came of it: the figures of every run, and the times and overruns that they were made of.
+struct TimedRun : RunFigures {
+  std::vector<std::uint32_t> frame_times_ns;            ///< of every frame
+  std::vector<std::uint32_t> collision_frame_times_ns;  ///< of the frames with contact
   std::vector<std::uint32_t> block_overruns, empty_block_overruns;  ///< of each block, and of the empty one behind it
-  double force_max = 0;                                             ///< N
-  double penetration_max = 0;                                       ///< m
-  std::string state_hash;
-
-  /// A scenario's measure by name. Error(input) naming it if the run has none.
-  [[nodiscard]] double measure(const std::string& name) const;
 };
 
 /// What a measurement is given.
 struct Workshop {
   bool quick = false;  ///< all results together in under 45 s on two cores
   std::string folder;  ///< exists; every file of a measurement goes here
-  std::function<RunFigures(const RunRequest&)> run;
+  std::function<TimedRun(const RunRequest&)> run;
 
   /// The path of a file in `folder`.
   [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }

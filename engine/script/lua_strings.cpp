@@ -8,6 +8,7 @@
 
 #include "engine/script/lua_pattern.hpp"
 #include "engine/script/sandbox.hpp"
+#include "engine/script/values.hpp"
 
 namespace verisim::script {
 namespace {
@@ -18,10 +19,6 @@ std::string_view string_at(lua_State* L, int index) {
   std::size_t size = 0;
   const char* data = luaL_checklstring(L, index, &size);
   return {data, size};
-}
-
-void push_text(lua_State* L, std::string_view text) {
-  lua_pushlstring(L, text.data(), text.size());
 }
 
 // Where a search begins: positions count from 1, negative ones from the end.

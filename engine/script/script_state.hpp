@@ -10,15 +10,14 @@
 #include <vector>
 
 #include "engine/base/random.hpp"
-#include "engine/device/hardware.hpp"
-#include "engine/device/sources.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/assembly_node.hpp"
+#include "engine/script/companion_node.hpp"
+#include "engine/script/device_node.hpp"
 #include "engine/script/frame_actions.hpp"
 #include "engine/script/sandbox.hpp"
 #include "engine/script/scenario.hpp"
 #include "engine/simulation/declaring.hpp"
-#include "engine/wii/head.hpp"
 
 namespace verisim::script {
 
@@ -29,36 +28,6 @@ inline constexpr std::uint64_t kFrameWork = 10'000'000;
 inline constexpr std::uint64_t kEventWork = 500;
 /// Frame actions that may be there at one time.
 inline constexpr std::size_t kActionsMax = 1000;
-
-/// A device as described; made real by finish_devices, when seed and bindings are known.
-struct DeviceNode {
-  enum class Kind { hardware, replay, hand, scale, translate };
-  Kind kind = Kind::hardware;
-  std::string name;                         ///< empty until finish_devices for one without a name
-  std::string place;                        ///< FILE:LINE of the word, for later errors
-  HardwareDescription hardware;             // hardware
-  HapticSamples samples;                    // replay
-  HandDescription hand;                     // hand
-  bool own_seed = false;                    // hand: seed= was given
-  double factor = 1;                        // scale
-  Vector3d translation = Vector3d::Zero();  // translate
-  std::shared_ptr<DeviceNode> inner;        ///< hardware: its source (may be null); filters: what they wrap
-  std::shared_ptr<Device> device;           ///< null until finish_devices
-};
-
-/// A WiiHead as described; made real by finish, when seed and bindings are known.
-struct HeadNode {
-  std::string name;
-  std::string place;  ///< FILE:LINE of the word
-  std::string tracker = "scaat";
-  std::string trace;                         ///< a wii trace; empty: virtual_remote
-  TraceLimits limits;                        ///< of the trace
-  wii::VirtualSourceOptions virtual_remote;  ///< name and seed are filled in by make_head
-  Pose X_WL;                                 ///< where the remote stands, levelled
-  std::shared_ptr<wii::Head> head;           ///< null until make_head
-};
-/// Error(input) for a trace that cannot be read or does not fit the tracker.
-void make_head(HeadNode& node, Inputs& inputs, std::uint64_t seed);
 
 struct BodyHandle {
   std::size_t index;  ///< in Scene::bodies
@@ -109,9 +78,9 @@ class ScriptState : public Sandbox {
   Inputs& inputs;
   Scene scene;
   bool scene_taken = false;
-  std::vector<std::shared_ptr<DeviceNode>> devices;  ///< in the order of addDevice
-  std::vector<std::shared_ptr<HeadNode>> heads;      ///< in the order of WiiHead
-  std::vector<std::pair<std::shared_ptr<DeviceNode>, std::size_t>> grasps;
+  std::vector<DevicePointer> devices;            ///< in the order of addDevice
+  std::vector<std::shared_ptr<CompanionNode>> companions;  ///< in the order of their words
+  std::vector<std::pair<DevicePointer, std::size_t>> grasps;
   std::vector<std::shared_ptr<CollisionCounter>> counters;
   Simulation* simulation = nullptr;  ///< null while the scene is built
 
@@ -130,16 +99,16 @@ class ScriptState : public Sandbox {
   std::vector<double> masses;                  ///< of described bodies, kg
   std::map<std::size_t, Declaring> declaring;  ///< bodies whose voxels the script goes through; until finish()
 
+  /// Raises if a companion of that name is there.
+  void add_companion(lua_State* L, std::shared_ptr<CompanionNode> node);
   /// Index in scene.devices of the chain that `node` is part of. Error(input) if it was never added.
   [[nodiscard]] std::size_t device_index(const DeviceNode& node) const;
 
  private:
   void check_sets() const;
-  void finish_devices();
   void bind_devices();
-  [[nodiscard]] bool bind_head(const std::string& wanted, const std::string& source);
-  void finish_heads();
-  void name_devices();
+  [[nodiscard]] bool bind_companion(const std::string& wanted, const std::string& source);
+  void finish_companions();
   void frame();
 
   std::set<std::string> told_;
@@ -147,9 +116,6 @@ class ScriptState : public Sandbox {
   std::string random_name_ = "script";
   std::uint64_t randoms_drawn_ = 0;
 };
-
-/// HapticSamples of a trace's content. `name` is for the messages.
-[[nodiscard]] HapticSamples read_samples(Inputs& inputs, const std::string& name, double max_gap, bool allow_gaps);
 
 /// Runs `make` and puts `place` before the text of an Error that it throws.
 template <typename Make>

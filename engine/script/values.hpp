@@ -6,6 +6,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -116,7 +117,10 @@ T& get(lua_State* L, int index, const std::string& what) {
 [[nodiscard]] Vector3d vector_at(lua_State* L, int index, const std::string& what);  ///< osg.Vec3 or {x, y, z}
 [[nodiscard]] Quaterniond rotation_at(lua_State* L, int index,
                                       const std::string& what);  ///< osg.Quat or {x, y, z, w}; unit
-void push_text(lua_State* L, const std::string& text);
+void push_text(lua_State* L, std::string_view text);
+
+/// A word that is accepted and does nothing.
+int no_effect(lua_State* L);
 
 /// ", or an empty string": "; did you mean 'x'? (a, b, c)" for a wrong name among `known` (sorted here).
 [[nodiscard]] std::string suggestion(const std::string& name, std::vector<std::string> known);

@@ -128,10 +128,6 @@ int help(lua_State* L) {
   return 0;
 }
 
-int no_effect(lua_State*) {
-  return 0;
-}
-
 }  // namespace
 
 void add_file_words(lua_State* L) {

@@ -16,8 +16,8 @@ template <typename Value>
 using Named = std::pair<const char*, Value>;
 
 /// The value that goes by `name`; any other name is an error that lists them.
-template <typename Value, std::size_t n>
-Value named(lua_State* L, const char* what, const std::string& name, const Named<Value> (&values)[n]) {
+template <typename Values>
+auto named(lua_State* L, const char* what, const std::string& name, const Values& values) {
   std::vector<std::string> names;
   for (const auto& [known, value] : values) {
     if (name == known) return value;
@@ -26,8 +26,11 @@ Value named(lua_State* L, const char* what, const std::string& name, const Named
   raise(L, "{} is '{}'{}", what, name, suggestion(name, names));
 }
 
-constexpr Named<Hybrid> kHybrids[] = {
-    {"off", Hybrid::off}, {"restore", Hybrid::restore}, {"blend", Hybrid::blend}, {"exact", Hybrid::exact}};
+std::vector<Named<Hybrid>> hybrids() {
+  std::vector<Named<Hybrid>> named;
+  for (const Hybrid method : hybrid::all()) named.emplace_back(method->name().data(), method);
+  return named;
+}
 constexpr Named<Integrator> kIntegrators[] = {{"semi-implicit", Integrator::semi_implicit},
                                               {"implicit", Integrator::implicit}};
 constexpr Named<ContactMethod> kContactMethods[] = {{"voxmap", ContactMethod::voxmap}, {"fcl", ContactMethod::fcl}};
@@ -36,8 +39,8 @@ constexpr Named<AlignmentMeasure> kAlignments[] = {
 constexpr Named<Reduction> kReductions[] = {{"common-freedom", Reduction::common_freedom},
                                             {"exactly-one", Reduction::exactly_one}};
 
-template <typename Value, std::size_t n>
-void read_named(lua_State* L, Fields& fields, const char* field, const Named<Value> (&values)[n], Value& value) {
+template <typename Values, typename Value>
+void read_named(lua_State* L, Fields& fields, const char* field, const Values& values, Value& value) {
   if (const auto name = fields.text(field)) value = named(L, field, *name, values);
 }
 
@@ -64,7 +67,7 @@ int define_simulation_parameters(lua_State* L) {
   if (const auto duration = fields.positive("duration")) p.duration = duration;
   p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
   read_named(L, fields, "integrator", kIntegrators, p.integrator);
-  read_named(L, fields, "hybrid", kHybrids, p.hybrid);
+  read_named(L, fields, "hybrid", hybrids(), p.hybrid);
   read_named(L, fields, "contact", kContactMethods, p.contact);
   read_named(L, fields, "alignment", kAlignments, p.alignment);
   read_named(L, fields, "reduction", kReductions, p.reduction);
@@ -142,9 +145,9 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
 void read_hybrid(lua_State* L, Fields& fields, BodyDescription& body) {
   if (!fields.push("hybrid")) return;
   if (lua_type(L, -1) == LUA_TBOOLEAN)
-    body.hybrid = lua_toboolean(L, -1) != 0 ? Hybrid::restore : Hybrid::off;
+    body.hybrid = lua_toboolean(L, -1) != 0 ? hybrid::restore : hybrid::off;
   else
-    body.hybrid = named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"), kHybrids);
+    body.hybrid = named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"), hybrids());
   lua_pop(L, 1);
 }
 

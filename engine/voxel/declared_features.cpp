@@ -6,82 +6,59 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
+#include "engine/geometry/entity_check.hpp"
+#include "engine/geometry/entity_row.hpp"
 
 namespace verisim {
 
 namespace {
 
-constexpr double kUnitLength = 1e-9;  // a direction's length may differ from one by this
+/// "plane", "circle" …, and what is wrong with it.
+struct Doubt {
+  const char* name;
+  std::optional<std::string> fault;
 
-/// What an entity is made of, in one shape for all kinds.
-struct Numbers {
-  int kind = 0;
-  Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
-  double first = 1, second = 1;  // lengths or angles that must be above zero
+  Doubt(const Face& face) : name(kSurfaceNames[face.surface.index()]), fault(fault_of(face.surface)) {
+    if (std::holds_alternative<OtherSurface>(face.surface)) fault = "has no equation; declare a plane or a round one";
+    const auto* torus = std::get_if<Torus>(&face.surface);
+    if (!fault && torus != nullptr && torus->minor_radius > torus->major_radius) {
+      fault = fmt::format("has a minor radius of {} m but it must not be above the major one, {} m",
+                          torus->minor_radius, torus->major_radius);
+    }
+  }
+  Doubt(const Edge& edge) : name(kCurveNames[edge.curve.index()]), fault(fault_of(edge.curve)) {
+    if (std::holds_alternative<OtherCurve>(edge.curve)) fault = "has no equation; declare a line, circle or ellipse";
+  }
 };
 
-struct NumbersOf {
-  Numbers operator()(const Plane& s) const { return {0, s.point, s.normal}; }
-  Numbers operator()(const Cylinder& s) const { return {1, s.point, s.direction, s.radius}; }
-  Numbers operator()(const Cone& s) const { return {2, s.point, s.direction, 1 + s.radius, s.half_angle}; }
-  Numbers operator()(const Sphere& s) const { return {3, s.center, Vector3d::UnitZ(), s.radius}; }
-  Numbers operator()(const Torus& s) const { return {4, s.center, s.direction, s.major_radius, s.minor_radius}; }
-  Numbers operator()(const OtherSurface&) const { return {5}; }
-  Numbers operator()(const Line& c) const { return {6, c.point, c.direction}; }
-  Numbers operator()(const Circle& c) const { return {7, c.center, c.normal, c.radius}; }
-  Numbers operator()(const Ellipse& c) const { return {8, c.center, c.normal, c.major_radius, c.minor_radius}; }
-  Numbers operator()(const OtherCurve&) const { return {9}; }
+/// A ball has no direction, whatever its entity says; which way an x axis points, and which side is a hole, is not
+/// declared.
+struct KeyOf {
+  DeclaredFeatures::Key operator()(const Face& face) const {
+    EntityRow row = row_of(face.surface);
+    if (std::holds_alternative<Sphere>(face.surface)) std::fill_n(row.begin() + 3, 3, 0.0);
+    return of(face.surface.index(), row);
+  }
+  DeclaredFeatures::Key operator()(const Edge& edge) const {
+    return of(kSurfaceNames.size() + edge.curve.index(), row_of(edge.curve));
+  }
+  static DeclaredFeatures::Key of(std::size_t kind, const EntityRow& r) {
+    return {static_cast<double>(kind), r[0], r[1], r[2], r[3], r[4], r[5], r[9], r[10]};
+  }
 };
 
-Numbers numbers_of(const DeclaredFeatures::Entity& entity) {
-  if (const auto* edge = std::get_if<Edge>(&entity)) return std::visit(NumbersOf{}, edge->curve);
-  return std::visit(NumbersOf{}, std::get<Face>(entity).surface);
-}
-
-void check(const std::string& owner, const Numbers& n) {
-  if (!n.point.allFinite() || !n.direction.allFinite() || !std::isfinite(n.first + n.second)) {
-    fail(ErrorKind::input, "'{}': a declared entity has a number that is not finite; give all of its fields", owner);
-  }
-  if (std::abs(n.direction.norm() - 1) > kUnitLength) {
-    fail(ErrorKind::input, "'{}': a declared entity's normal has length {}; give one of length 1", owner,
-         n.direction.norm());
-  }
-  if (!(n.first > 0 && n.second > 0)) {
-    fail(ErrorKind::input, "'{}': a declared entity has a radius or angle of {} but it must be above 0", owner,
-         std::min(n.first, n.second));
-  }
-}
-
-/// What no bound on single numbers tells of a round face.
-void check_shape(const std::string& owner, const Surface& surface) {
-  if (const auto* cone = std::get_if<Cone>(&surface); cone != nullptr && cone->half_angle >= 0.5 * pinned::kPi) {
-    fail(ErrorKind::input, "'{}': a declared cone has a half angle of {} rad but it must be below pi/2, 90 degrees",
-         owner, cone->half_angle);
-  }
-  if (const auto* torus = std::get_if<Torus>(&surface); torus != nullptr && torus->minor_radius > torus->major_radius) {
-    fail(ErrorKind::input,
-         "'{}': a declared torus has a minor radius of {} m but it must not be above the major one, {} m", owner,
-         torus->minor_radius, torus->major_radius);
-  }
+void check(const std::string& owner, const DeclaredFeatures::Entity& entity) {
+  const auto [name, fault] = std::visit([](const auto& e) { return Doubt(e); }, entity);
+  if (fault) fail(ErrorKind::input, "'{}': a declared {} {}", owner, name, *fault);
 }
 
 }  // namespace
 
 DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, const Entity& entity) {
-  const Numbers n = numbers_of(entity);
-  check(owner, n);
-  if (const auto* face = std::get_if<Face>(&entity)) check_shape(owner, face->surface);
+  check(owner, entity);
   const bool is_edge = std::holds_alternative<Edge>(entity);
   const auto next = static_cast<Place>(is_edge ? 2 * edges_.size() + 1 : 2 * faces_.size());
-  const Key key = {static_cast<double>(n.kind),
-                   n.point.x(),
-                   n.point.y(),
-                   n.point.z(),
-                   n.direction.x(),
-                   n.direction.y(),
-                   n.direction.z(),
-                   n.first,
-                   n.second};
+  const Key key = std::visit(KeyOf{}, entity);
   const auto [found, is_new] = places_.try_emplace(key, next);
   if (!is_new) return found->second;
   if (is_edge) {
@@ -122,6 +99,9 @@ void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d
     add(cone->hole, from_axis(cone->point, cone->direction) - pinned::tan(cone->half_angle) * cone->direction);
   } else if (auto* sphere = std::get_if<Sphere>(&surface)) {
     add(sphere->hole, (p - sphere->center).normalized());
+  } else if (auto* torus = std::get_if<Torus>(&surface)) {
+    const Vector3d ring = torus->center + torus->major_radius * from_axis(torus->center, torus->direction);
+    add(torus->hole, (p - ring).normalized());
   }
 }
 

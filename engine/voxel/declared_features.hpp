@@ -23,12 +23,13 @@ namespace verisim {
 class DeclaredFeatures {
  public:
   using Entity = std::variant<Face, Edge>;
+  /// Kind, point, direction and two sizes: entities are equal if these are.
+  using Key = std::array<double, 9>;
 
   /// The number of the set of these entities: that of an equal set, or the next one. Entities are equal if all numbers
   /// of their surface or curve are.
-  /// Throws Error(input) that names `owner` for an entity with a number that is not finite, a direction that is not of
-  /// unit length, a radius that is not above zero, a cone's half angle of pi/2 or more, or a torus that meets itself,
-  /// and for more sets than can be numbered.
+  /// Throws Error(input) that names `owner` for an entity that is none (fault_of in engine/geometry/entity_check.hpp),
+  /// one without an equation, a torus that meets itself, and more sets than can be numbered.
   FeatureSetId add(const std::string& owner, std::span<const Entity> set);
 
   /// Gives a surface voxel the set: its number in [1, size()], or 0 to take a set away.
@@ -50,8 +51,6 @@ class DeclaredFeatures {
  private:
   /// Faces are 2 i, edges 2 i + 1.
   using Place = EntityNumber;
-  /// Kind, point, direction and two sizes: entities are equal if these are.
-  using Key = std::array<double, 9>;
 
   [[nodiscard]] Place place_of(const std::string& owner, const Entity& entity);
   void weigh(std::size_t face, const Vector3d& p, const Vector3d& inward);

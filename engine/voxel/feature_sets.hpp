@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/named_array.hpp"
 #include "engine/geometry/entity.hpp"
 
 namespace verisim {
@@ -48,12 +47,6 @@ class FeatureSets {
   /// Number of sets, the empty set included: every number is below it.
   [[nodiscard]] std::size_t size() const { return begin_.size() - 1; }
   [[nodiscard]] std::size_t memory_bytes() const;
-
-  /// The sets as a flat table of entities and one of offsets, and back. Numbers stay.
-  [[nodiscard]] std::vector<NamedArray> to_tables() const;
-  /// Throws Error(input) if the tables do not fit together or name an entity from `entity_count` on.
-  [[nodiscard]] static FeatureSets from_tables(const std::string& owner, const std::vector<NamedArray>& tables,
-                                               std::size_t entity_count);
 
  private:
   [[nodiscard]] std::size_t place_of(std::span<const EntityNumber> entities) const;

@@ -12,7 +12,6 @@ inline constexpr std::uint16_t kDefaultPort = 3883;
 inline constexpr std::size_t kCookieBytes = 24;
 inline constexpr std::size_t kHeaderBytes = 24;
 inline constexpr std::size_t kPaddedPayloadMax = 64008;  ///< stock drops a connection that sends more
-inline constexpr std::size_t kDatagramMax = 1408;        ///< the longest that stock accepts
 
 /// Types of system messages.
 inline constexpr std::int32_t kSenderDescription = -1;

@@ -42,7 +42,6 @@ struct SensorPose {
   Placement placement;
 };
 [[nodiscard]] Bytes encode(const SensorPose& pose);
-[[nodiscard]] std::optional<SensorPose> decode_sensor_pose(View payload);
 
 /// kToRoom.
 [[nodiscard]] Bytes encode(const Placement& placement);

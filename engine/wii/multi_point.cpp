@@ -28,6 +28,7 @@ class MultiPoint final : public TrackerBase {
       : TrackerBase(settings),
         name_(name),
         remotes_(remotes),
+        X_R1R2_(settings.X_R1R2.value_or(Pose())),
         solver_(settings),
         followers_{PairFollower(settings.leds, pinhole()), PairFollower(settings.leds, pinhole())} {}
 
@@ -164,7 +165,7 @@ class MultiPoint final : public TrackerBase {
   [[nodiscard]] Pose in_first(const TwoPointPose& pose, int remote) const {
     const Quaterniond C_RL = Quaterniond(gravity(remote).C_LR()).conjugate();
     const Pose X_iH{C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()};
-    return remote == 0 ? X_iH : settings().X_R1R2 * X_iH;
+    return remote == 0 ? X_iH : X_R1R2_ * X_iH;
   }
 
   [[nodiscard]] Pose predicted(double t) const {
@@ -193,6 +194,7 @@ class MultiPoint final : public TrackerBase {
 
   std::string_view name_;
   int remotes_;
+  Pose X_R1R2_;  ///< the second remote in coordinates of the first
   PoseSolver solver_;
   std::array<PairFollower, 2> followers_;
   std::array<View, 2> views_;
@@ -210,14 +212,12 @@ class MultiPoint final : public TrackerBase {
 }  // namespace
 
 std::unique_ptr<Tracker> make_three_led(const TrackerSettings& settings) {
-  if (settings.leds.count < 3)
-    fail(ErrorKind::input,
-         "tracker three-led: {} LEDs are described but it needs three; add a third to '# leds:', or use geometric",
-         settings.leds.count);
+  VERISIM_ASSERT(settings.leds.count >= 3);
   return std::make_unique<MultiPoint>(settings, "three-led", 1);
 }
 
 std::unique_ptr<Tracker> make_stereo(const TrackerSettings& settings) {
+  VERISIM_ASSERT(settings.X_R1R2.has_value());
   return std::make_unique<MultiPoint>(settings, "stereo", 2);
 }
 

@@ -30,7 +30,7 @@ struct PoseSolver::Normal {
 
 PoseSolver::PoseSolver(const TrackerSettings& settings)
     : pinhole_(settings.fov), weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)) {
-  const Pose X_R2R1 = settings.X_R1R2.inverse();
+  const Pose X_R2R1 = settings.X_R1R2.value_or(Pose()).inverse();
   R_iR_ = {Matrix3d::Identity(), X_R2R1.rotation.toRotationMatrix()};
   p_iR_ = {Vector3d::Zero(), X_R2R1.position};
 }

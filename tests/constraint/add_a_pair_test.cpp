@@ -39,7 +39,7 @@ namespace {
 
 // Step 2: its place in the list, and its cell in the drawing.
 using Extended = Recognizers::With<EllipseEllipse>;
-constexpr std::size_t kEllipse = Shapes<Entity>::index_of<Ellipse>();
+constexpr std::size_t kEllipse = Entity(Bounded<Ellipse>()).index();
 static_assert(drawing_of<Recognizers, Entity>()[kEllipse][kEllipse] == '-');
 static_assert(drawing_of<Extended, Entity>()[kEllipse][kEllipse] == 'O');
 

@@ -147,7 +147,6 @@ TEST(ConstraintMemo, FallsBackForThousandsOfFreeformFaces) {
     EXPECT_EQ(memo.candidates(memo.look_up(id, pin::side)).count, 0);
   }
   EXPECT_EQ(allocations, before);
-  EXPECT_EQ(memo.constraints_known(), 0U);
   EXPECT_EQ(memo.counts().misses_null, kFaces + 1);
   EXPECT_EQ(memo.counts().overflows, kFaces + 1 - MemoLimits().pairs);
 }

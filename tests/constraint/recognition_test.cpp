@@ -175,27 +175,6 @@ std::vector<Entity> mixed(std::uint64_t seed, int count) {
   return all;
 }
 
-// Plain against fast: each pair by itself, and type block by type block.
-TEST(Recognition, OfWholeSetsFindsWhatSinglePairsGive) {
-  for (const std::uint64_t seed : test::seeds(20)) {
-    SCOPED_TRACE(seed);
-    const std::vector<Entity> a = mixed(seed, 60);
-    const std::vector<Entity> b = mixed(seed + 1000, 40);
-    std::vector<Match> plain;
-    for (std::uint16_t i = 0; i < a.size(); ++i) {
-      for (std::uint16_t j = 0; j < b.size(); ++j) {
-        const ConstraintKind k = recognize(a[i], b[j]).kind;
-        if (k != ConstraintKind::none) plain.push_back({i, j, k});
-      }
-    }
-    std::vector<Match> sorted = recognize_all(a, b);
-    std::sort(sorted.begin(), sorted.end(),
-              [](const Match& m, const Match& n) { return m.a != n.a ? m.a < n.a : m.b < n.b; });
-    EXPECT_GT(plain.size(), 50U) << "nothing to compare";
-    EXPECT_EQ(sorted, plain);
-  }
-}
-
 TEST(Recognition, AllocatesNothing) {
   const std::vector<Entity> a = mixed(1, 60);
   const std::vector<Entity> b = mixed(2, 60);

@@ -11,7 +11,8 @@ namespace {
 ContactList contacts_of(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_AB,
                         const Vector3d& origin = Vector3d::Zero(), std::size_t capacity = 1000) {
   ContactList contacts(capacity);
-  query(MeshTree(a), MeshTree(b), X_AB, origin, contacts);
+  QueryCost cost;
+  query(MeshTree(a), MeshTree(b), X_AB, origin, contacts, cost);
   return contacts;
 }
 

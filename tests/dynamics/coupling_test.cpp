@@ -115,7 +115,8 @@ TEST(CouplingForce, PullsAndTurnsTowardsTheTarget) {
   EXPECT_LE((f.damper.force - Vector3d(0, 0.5 * c.damping, 0)).norm(), tolerance(4 * 24 * 0x1p-53));
   EXPECT_LE((f.damper.torque - Vector3d(0, 0, 0.25 * c.angular_damping_B(2, 2))).norm(), tolerance(1e-15));
   EXPECT_EQ(f.total().force, f.spring.force + f.damper.force);
-  EXPECT_LE(std::abs(coupling_energy(c, body, target) - (0.5 * 300 * 1e-4 + 0.5 * 0.1 * 0.04)), tolerance(1e-16));
+  EXPECT_LE(std::abs(coupling_energy(c, coupling_force(c, body, target)) - (0.5 * 300 * 1e-4 + 0.5 * 0.1 * 0.04)),
+            tolerance(1e-16));
 }
 
 // Far from its target a body feels exactly the limits, towards the target, whichever integrator moves it.

@@ -101,6 +101,14 @@ TEST(Tables, DamagedAreRefused) {
     }
     EXPECT_THROW(static_cast<void>(from_tables("pin", damaged)), Error) << name;
   }
+  for (const char* name : {"face_kind", "edge_kind"}) {  // a kind that there is not
+    std::vector<NamedArray> damaged = sound;
+    for (NamedArray& table : damaged) {
+      if (table.name == name) table.bytes[0] = std::byte{0x7F};
+    }
+    const std::string error = error_of(ErrorKind::input, [&] { static_cast<void>(from_tables("pin", damaged)); });
+    EXPECT_NE(error.find("has kind 127"), std::string::npos) << error;
+  }
 }
 
 TEST(Questions, AreAskedAboutAPart750MetresWide) {

@@ -6,6 +6,7 @@
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/parametrization.hpp"
 #include "tests/geometry/recovered.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace verisim {
 namespace {
@@ -95,7 +96,7 @@ void expect_the_same_in_any_order(const TriangleMesh& mesh, std::uint64_t seed) 
 
 TEST(RecoverDamaged, SaysSomethingOfEveryTriangleInAnyOrder) {
   TriangleMesh bulky = testing::box_mesh({0, 0, 0}, {0.03, 0.02, 0.01});
-  for (int i = 0; i < 3; ++i) bulky = subdivide(bulky);
+  for (int i = 0; i < 3; ++i) bulky = test::subdivide(bulky);
   const TriangleMesh ring = testing::ring_mesh(0.02, 0.006, 32, 20);
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);

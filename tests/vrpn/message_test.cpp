@@ -84,11 +84,6 @@ TEST(Payload, DecodersRefuseWhatIsNotExactlyRight) {
   put_text(long_name, std::string(96, 'x'));
   EXPECT_FALSE(decode_name(long_name));
 
-  const Bytes pose = encode(SensorPose{});
-  EXPECT_TRUE(decode_sensor_pose(pose));
-  EXPECT_FALSE(decode_sensor_pose(View(pose).first(63)));
-  EXPECT_FALSE(decode_sensor_pose(encode(SensorPose{-1, {}})));
-
   const Bytes analog = encode_analog(std::array{1.0, 2.0});
   EXPECT_FALSE(decode_analog(View(analog).first(16)));
   for (const double count : {-1.0, 1.5, 129.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
@@ -153,15 +148,11 @@ TEST(Fuzz, NoBytesBreakTheDecoders) {
     const View payload = framed.message.payload;
     ASSERT_LE(kHeaderBytes + payload.size(), framed.bytes);
     const auto name = decode_name(payload);
-    const auto pose = decode_sensor_pose(payload);
     const auto analog = decode_analog(payload);
     const auto text = decode_text(payload);
-    understood += name || pose || analog ? 1 : 0;
+    understood += name || analog ? 1 : 0;
     if (name) {
       ASSERT_LE(name->size(), kNameMax);
-    }
-    if (pose) {
-      ASSERT_GE(pose->sensor, 0);
     }
     if (analog) {
       ASSERT_LE(analog->count, kChannelsMax);

@@ -85,7 +85,17 @@ template <typename A, typename B>
   return c;
 }
 
-/// The same with a pin and a hole: who is who, and by how much the hole is larger.
+/// The same with a plane as b, which gives the normal and only pushes.
+template <typename A>
+[[nodiscard]] inline Constraint on_plane(const Bounded<A>& a, const Bounded<Plane>& b, ConstraintKind kind,
+                                         Pairing pairing) {
+  Constraint c = between(a, b, kind, pairing, NormalField::constant);
+  c.guide = Side::b;
+  c.pushes_only = true;
+  return c;
+}
+
+/// Two sides with a pin and a hole: who is who, and by how much the hole is larger.
 template <typename A, typename B>
 [[nodiscard]] inline Constraint pin_in_hole(const Bounded<A>& a, const Bounded<B>& b, ConstraintKind kind,
                                             Pairing pairing, NormalField field) {

@@ -168,7 +168,8 @@ class Bounds {
     for (const Vector3d& p : points_) {
       const Profile f = profile_of(p, s.center, s.direction);
       const auto distance = [&](double rho) {
-        return std::abs(std::hypot(rho - s.major_radius, f.height) - s.minor_radius);
+        const double from_ring = rho - s.major_radius;
+        return std::abs(std::sqrt(from_ring * from_ring + f.height * f.height) - s.minor_radius);
       };
       here += distance(f.rho);
       beyond += distance(-f.rho);

@@ -1,8 +1,6 @@
-// Recognition between two whole sets at once: entities sorted by type, so that the question "which recognizer?" is
-// asked once per block of two types and not once per pair, and blocks that have none cost nothing.
-//
-// Answers which pairs fit by size and role, as numbers; the constraint itself is made of those that are wanted
-// (recognize). Same recognizers, same answers as one pair after the other (a test compares them).
+// What recognition would cost if whole sets were recognized at once: entities sorted by type, so that the question
+// "which recognizer?" is asked once per block of two types and not once per pair, and blocks that have none cost
+// nothing. The engine meets its pairs one by one and remembers them; this is what its cost per pair is compared with.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +12,7 @@
 #include "engine/base/error.hpp"
 #include "engine/constraint/multi_method.hpp"
 
-namespace verisim {
+namespace verisim::bench {
 
 /// A pair of entities that fit, by their numbers in the two sets. Six bytes.
 struct Match {
@@ -61,8 +59,6 @@ class SortedSet<std::variant<Bounded<Shape>...>> {
   std::tuple<Block<Shape>...> blocks_;
 };
 
-namespace recognizing {
-
 /// Writes every pair and keeps it only if it fits: no branch for the processor to guess.
 template <typename List, typename A, typename B, typename Set>
 inline Match* match_block(const Set& a, const Set& b, const Tolerances& tolerances, Match* out) {
@@ -73,7 +69,7 @@ inline Match* match_block(const Set& a, const Set& b, const Tolerances& toleranc
     for (std::size_t i = 0; i < rows.entities.size(); ++i) {
       for (std::size_t j = 0; j < columns.entities.size(); ++j) {
         *out = {rows.numbers[i], columns.numbers[j], Recognizer::kKind};
-        out += match<List>(rows.entities[i], columns.entities[j], tolerances) ? 1 : 0;
+        out += recognizing::match<List>(rows.entities[i], columns.entities[j], tolerances) ? 1 : 0;
       }
     }
   }
@@ -90,16 +86,14 @@ Match* match_all(const Set& a, const Set& b, const Tolerances& tolerances, Match
   return out;
 }
 
-}  // namespace recognizing
-
 /// All pairs that fit, type block after type block; returns how many. About half a nanosecond per pair; no allocation.
 /// @pre matches.size() > a.size() * b.size(): one place more than there are pairs
 template <typename List, typename Variant>
 [[nodiscard]] std::size_t match_sets(const SortedSet<Variant>& a, const SortedSet<Variant>& b,
                                      const Tolerances& tolerances, std::span<Match> matches) {
   VERISIM_ASSERT(matches.size() > a.size() * b.size());
-  const Match* end = recognizing::match_all<List>(a, b, tolerances, matches.data(), TypeOf<Variant>());
+  const Match* end = match_all<List>(a, b, tolerances, matches.data(), TypeOf<Variant>());
   return static_cast<std::size_t>(end - matches.data());
 }
 
-}  // namespace verisim
+}  // namespace verisim::bench

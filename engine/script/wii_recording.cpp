@@ -1,4 +1,4 @@
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
 
 #include <array>
 #include <cmath>
