@@ -43,8 +43,8 @@ struct RunRequest {
 };
 /// What came of it: the figures of every run, and the times and overruns that they were made of.
 struct TimedRun : RunFigures {
-  std::vector<std::uint32_t> frame_times_ns;            ///< of every frame
-  std::vector<std::uint32_t> collision_frame_times_ns;  ///< of the frames with contact
+  std::vector<std::uint32_t> frame_times_ns;                        ///< of every frame
+  std::vector<std::uint32_t> collision_frame_times_ns;              ///< of the frames with contact
   std::vector<std::uint32_t> block_overruns, empty_block_overruns;  ///< of each block, and of the empty one after it
 };
 
