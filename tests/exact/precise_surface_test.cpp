@@ -8,7 +8,7 @@
 #include "engine/exact/meridian.hpp"
 #include "tests/exact/scenes.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::precise_surface_test {
 namespace {
 
 constexpr double kTwoPi = 2 * 3.14159265358979323846;
@@ -231,4 +231,4 @@ TEST(PreciseSurface, IsNothingWithoutExtent) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::precise_surface_test

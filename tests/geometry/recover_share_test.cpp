@@ -11,7 +11,7 @@
 #include "tests/geometry/parametrization.hpp"
 #include "tests/geometry/recovered.hpp"
 
-namespace verisim {
+namespace verisim::recover_share_test {
 namespace {
 
 bool near(double found, double drawn) {
@@ -158,4 +158,4 @@ TEST_F(RecoverShare, OfCoarseTessellationsIsNoLess) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recover_share_test

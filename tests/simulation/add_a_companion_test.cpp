@@ -6,7 +6,7 @@
 
 #include "tests/simulation/scenes.hpp"
 
-namespace verisim {
+namespace verisim::add_a_companion_test {
 namespace {
 
 /// A lamp that blinks at a rate of its own.
@@ -75,4 +75,4 @@ TEST(ACompanion, IsPartOfTheStateThatIsHashed) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::add_a_companion_test

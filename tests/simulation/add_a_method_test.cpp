@@ -4,7 +4,7 @@
 
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::add_a_method_test {
 namespace {
 
 /// Leaves half of every force, and of every normal in implicit steps: half of its direction's force is gone as well.
@@ -71,4 +71,4 @@ TEST(Methods, StandInTheOrderOfTheirPrecedence) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::add_a_method_test
