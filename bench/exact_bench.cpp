@@ -62,7 +62,7 @@ void play(Body held, HandAt&& hand_at, int steps, FrameTimes& times, Each&& each
     if (!is_first) continue;
     times.rows += static_cast<double>(held.link.rows().rows().size()) / steps;
     times.samples += static_cast<double>(held.link.cost().samples) / steps;
-    times.slides += static_cast<double>(held.link.cost().slides) / steps;
+    times.slides += static_cast<double>(held.link.cost().closest_places) / steps;
     times.iterations_max = std::max(times.iterations_max, held.iterations);
     each(held);
   }

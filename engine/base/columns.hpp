@@ -96,8 +96,9 @@ class Columns {
   void add(std::string path, std::string units, std::string description, Get get, std::vector<std::string> names = {},
            std::string due = {}) {
     using Value = std::remove_cvref_t<std::invoke_result_t<Get>>;
-    Column column{std::move(path), Recorded<Value>::kType, Recorded<Value>::kWidth, std::move(units),
-                  std::move(description), 0, std::move(names), std::move(due)};
+    Column column{std::move(path),  Recorded<Value>::kType, Recorded<Value>::kWidth,
+                  std::move(units), std::move(description), 0,
+                  std::move(names), std::move(due)};
     Facts& facts = column.path.starts_with("/state/") ? state_ : other_;
     facts.bytes += column.bytes();
     facts.columns.push_back(std::move(column));

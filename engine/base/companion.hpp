@@ -1,5 +1,5 @@
-// What runs beside the loop on a clock of its own: a tracked head, a robot with its firmware. The loop knows a companion
-// by this alone; nothing that the loop computes depends on one, unless a device or a script asks it.
+// What runs beside the loop on a clock of its own: a tracked head, a robot with its firmware. The loop knows a
+// companion by this alone; nothing that the loop computes depends on one, unless a device or a script asks it.
 #pragma once
 
 #include <string>

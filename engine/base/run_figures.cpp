@@ -21,7 +21,7 @@ constexpr std::array kFigures = {
     RunFigure{"wall_s", "s", "wall clock from the first frame to the closed file", get<&RunFigures::wall_s>},
     RunFigure{"load_s", "s", "wall clock of loading before that", get<&RunFigures::load_s>},
     RunFigure{"realtime_factor", "1", "simulated time over wall clock",
-           [](const RunFigures& run) -> RunFigure::Value { return run.realtime_factor(); }},
+              [](const RunFigures& run) -> RunFigure::Value { return run.realtime_factor(); }},
     RunFigure{"collision_frames", "1", "frames with a contact", get<&RunFigures::collision_frames>},
     RunFigure{"overruns", "1", "frames over 1.5 time steps", get<&RunFigures::overruns>},
     RunFigure{"realtime_priority", "", "the system granted real-time priority", get<&RunFigures::realtime_priority>},
@@ -46,7 +46,9 @@ std::span<const RunFigure> run_figures() {
 
 double RunFigures::measure(const std::string& name) const {
   const auto found = std::find_if(measures.begin(), measures.end(), [&](const Measure& m) { return m.name == name; });
-  if (found == measures.end()) fail(ErrorKind::input, "{}: the scenario measured no '{}'; run it by itself to see what it measures", run_file, name);
+  if (found == measures.end())
+    fail(ErrorKind::input, "{}: the scenario measured no '{}'; run it by itself to see what it measures", run_file,
+         name);
   return found->value;
 }
 

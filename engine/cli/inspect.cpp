@@ -25,7 +25,7 @@ struct InspectOptions {
   bool json = false;
 };
 
-/// What voxelizing a part yields, or why it cannot be.
+/// The result of voxelizing a part, or the reason why that fails.
 struct VoxelStatistics {
   std::uint32_t surface_voxels = 0;
   std::size_t memory_bytes = 0;
@@ -164,9 +164,9 @@ void inspect(const InspectOptions& o) {
   report["parts"] = ordered_json::array();
   for (const Part& part : parts) {
     ordered_json j = json_of(part, o.density);
-    for (const std::string& question : questions_about(part)) {
-      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), question.c_str());
-      j["notes"].push_back(question);
+    for (const std::string& warning : warnings_about(part)) {
+      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), warning.c_str());
+      j["notes"].push_back(warning);
     }
     if (o.voxel) {
       const VoxelStatistics v = voxel_statistics(part, *o.voxel);

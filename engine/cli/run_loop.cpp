@@ -95,7 +95,7 @@ class Pace {
   Clock::duration period_{};
 };
 
-/// Counts overruns block by block, and lets an empty block follow each.
+/// Counts overruns block by block, and runs an empty block after each.
 class Blocks {
  public:
   Blocks(const LoopOptions& options, LoopResult& result)

@@ -24,7 +24,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
   std::vector<std::string> notices = session.scenario->notices();
   for (const BodyDescription& body : scene.bodies)
     for (const Part& part : body.parts)
-      for (const std::string& question : questions_about(part)) notices.push_back("'" + body.name + "': " + question);
+      for (const std::string& warning : warnings_about(part)) notices.push_back("'" + body.name + "': " + warning);
   for (const auto& device : scene.devices)
     if (!device->driven())
       notices.push_back("device '" + device->name() +

@@ -1,4 +1,4 @@
-// What the wii commands share.
+// Functions common to the wii commands.
 #pragma once
 
 #include <CLI/CLI.hpp>

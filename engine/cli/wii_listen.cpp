@@ -44,8 +44,8 @@ class ChannelRecord {
     trace_.columns = wii_trace_columns();
   }
 
-  /// A report with fewer than 15 channels, one that is not finite, or one that is not later than the one before has no
-  /// place in a trace: it is counted and left out.
+  /// Adds a report to the trace. A report is counted and left out if it has fewer than 15 channels, is not finite, or
+  /// is not later than the last one.
   void add(const vrpn::Received& message) {
     const auto analog = vrpn::decode_analog(message.payload);
     if (trace_.values.empty()) begin_ = message.time;

@@ -79,7 +79,7 @@ void wait_for_client(HeadServer& head, bool quiet) {
   }
 }
 
-/// Lets clients take what is queued for them.
+/// Lets clients receive their queued messages.
 void say_farewell(HeadServer& head, bool quiet) {
   const StopWatch watch;
   do head.server().turn(wire_time(), kIdleWait);

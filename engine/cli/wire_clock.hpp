@@ -7,9 +7,9 @@
 
 namespace verisim::cli {
 
-/// What message headers say: time since 1970.
+/// Time since 1970, as message headers hold it.
 [[nodiscard]] vrpn::Timestamp wire_time();
-/// `begin` and a number of microseconds more.
+/// `begin` plus a number of microseconds.
 [[nodiscard]] vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds);
 /// From `begin` to `end`.
 [[nodiscard]] std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end);

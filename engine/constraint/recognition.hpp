@@ -1,5 +1,5 @@
-// Automatic constraint recognition: the public face of the multi-method (multi_method.hpp) with all of the project's
-// recognizers (recognizers.hpp).
+// Constraint recognition with all of the project's recognizers (recognizers.hpp; dispatch: multi_method.hpp). Source:
+// dissertation chapter 7.
 #pragma once
 
 #include "engine/constraint/constraint.hpp"
@@ -8,8 +8,8 @@
 
 namespace verisim {
 
-/// The constraint between an entity of A and one of B, or kind `none`. Order does not matter but for the sides. Pure,
-/// no allocation.
+/// The constraint between an entity of A and one of B, or kind `none`. Swapped arguments swap the sides and change
+/// nothing else. Pure, no allocation.
 [[nodiscard]] Constraint recognize(const Entity& a, const Entity& b, const Tolerances& tolerances = {});
 
 }  // namespace verisim

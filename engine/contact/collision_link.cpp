@@ -9,7 +9,7 @@
 namespace verisim {
 namespace {
 
-/// Of the budget that is left, so much is used: W changes within a step, the rule holds for frozen W.
+/// Fraction of the budget that is used: the rule assumes a constant W, but W changes within a step.
 constexpr double kSafety = 0.8;
 
 /// Upper bound of the largest eigenvalue of M^-1 W: the Frobenius norm of M^-1/2 W M^-1/2 = sqrt(trace((M^-1 W)^2)).
@@ -72,8 +72,8 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
     verisim::query(*map_, *shell_, X_MP, contacts_, cost);
 }
 
-void CollisionLink::stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
-                            double dt) {
+void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+                                     double dt) {
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(is_not_negative(parameters.stiffness_max));
   VERISIM_ASSERT(is_not_negative(parameters.damping_ratio));
@@ -113,7 +113,7 @@ Twist CollisionLink::relative_twist(const LinkBody& first, const LinkBody& secon
 void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
                             double dt) {
   if (contacts_.size == 0) return;
-  stiffen(first, second, parameters, dt);
+  choose_stiffness(first, second, parameters, dt);
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
@@ -127,7 +127,7 @@ void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& secon
                                     double dt, LinkSides& sides) {
   sides = LinkSides();
   if (contacts_.size == 0) return;
-  stiffen(first, second, parameters, dt);
+  choose_stiffness(first, second, parameters, dt);
   const Twist relative = relative_twist(first, second);
   give_to_both(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true, sides);
 }

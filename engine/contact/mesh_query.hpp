@@ -1,11 +1,11 @@
-// Triangles against triangles by FCL: the comparator of the voxmap query (`contact = "fcl"`), with a pair's contacts in
-// the same list, so that response and everything behind it are the same.
+// Triangles against triangles by FCL: the comparator of the voxmap query (`contact = "fcl"`). Its contacts are in the
+// same list, so the response is the same.
 //
-// FCL's contact of two triangles that intersect (0.7, collision/intersect-inl.h): the deepest corner of one behind the
-// other's plane, of the two ways the less deep one; that corner, that plane's normal, that depth. At edges some of
-// these reach through the whole part to a face around the edge. So a contact counts only if it is the shallowest of one
-// of its two triangles, and of a corner's contacts only the shallowest does. A body that has swallowed the other
-// touches nothing.
+// FCL's contact of two intersecting triangles (0.7, collision/intersect-inl.h): the deepest corner of one triangle
+// behind the other's plane, with that plane's normal and that depth; of the two choices the less deep one. At edges
+// some depths reach through the whole part to a face around the edge. So a contact counts only if it is the shallowest
+// of one of its two triangles, and of a corner's contacts only the shallowest counts. A body inside another touches
+// nothing.
 //
 // Cost: milliseconds where query.hpp takes microseconds, and FCL allocates. Its answer is the same on every run.
 #pragma once

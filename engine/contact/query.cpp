@@ -18,7 +18,7 @@ namespace {
 /// In a brick with or next to one with surface voxels the layer itself is that number (at kBand + 1, a lower bound of
 /// it). If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And a cell beyond the grid is at
 /// least as far as the grid's cell nearest to it.
-std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
+std::int32_t steps_to_surface(const QueryConstants& f, const std::int32_t cell[3]) {
   std::int32_t clamped[3];
   for (int i = 0; i < 3; ++i) clamped[i] = clamp_cell(cell[i], f.cell_max[i]);
   const Layer clearance = f.brick_clearance[brick_of(f, clamped)];
@@ -28,7 +28,7 @@ std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
 
 /// The grid's border is one brick of outside: nothing beyond the inner box can be in contact. False for a centre that
 /// is not a number.
-bool meets_grid(const QueryFrame& f, const Center& g, double reach) {
+bool meets_grid(const QueryConstants& f, const Center& g, double reach) {
   const double low = kBrickSide - reach;
   const double high = reach + 1 - kBrickSide;
   return g.x > low && g.x < f.cell_max[0] + high && g.y > low && g.y < f.cell_max[1] + high && g.z > low &&
@@ -48,7 +48,7 @@ double reach_of(const Pointshell::Cluster& cluster, double per_metre) {
 /// centre's cell is outside and the nearest surface voxel more than ceil(reach) steps away, no step on the way to any
 /// point's cell meets one: all are outside, layer > 0. A cluster deep inside is not culled: steps_to_surface is 0
 /// there.
-bool surely_outside(const QueryFrame& f, const ClusterFrame& c, double reach) {
+bool surely_outside(const QueryConstants& f, const PlacedCluster& c, double reach) {
   return steps_to_surface(f, c.base) - 1 >= reach;  // more steps than ceil(reach), as both sides of it are whole
 }
 
@@ -72,25 +72,25 @@ ContactList::ContactList(std::size_t capacity) {
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
   check(a, b, X_AB, contacts);
   contacts.size = 0;
-  const QueryFrame frame = make_query_frame(a, b, X_AB);
+  const QueryConstants constants = make_query_constants(a, b, X_AB);
   const double per_metre = 1 / a.voxel_size;
-  std::array<ClusterFrame, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
+  std::array<PlacedCluster, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
   std::size_t filled = 0;
   for (const Pointshell::Cluster& cluster : b.clusters) {
-    const Center center = center_of(frame, cluster);
+    const Center center = center_of(constants, cluster);
     const double reach = reach_of(cluster, per_metre);
-    if (!meets_grid(frame, center, reach)) continue;
+    if (!meets_grid(constants, center, reach)) continue;
     place(cluster, center, batch[filled]);
-    if (surely_outside(frame, batch[filled], reach)) continue;
+    if (surely_outside(constants, batch[filled], reach)) continue;
     batch[filled].near = reach <= kBrickSide;
     VERISIM_ASSERT(reach < 1 << 20);  // local coordinates stay within the range of kRounder
     VERISIM_ASSERT(cluster.end - cluster.begin <= static_cast<std::uint32_t>(kBrickCells));
     cost.points += cluster.end - cluster.begin;
     if (++filled < batch.size()) continue;
-    cost.candidates += append_contacts(frame, b, batch, contacts);
+    cost.candidates += append_contacts(constants, b, batch, contacts);
     filled = 0;
   }
-  cost.candidates += append_contacts(frame, b, {batch.data(), filled}, contacts);
+  cost.candidates += append_contacts(constants, b, {batch.data(), filled}, contacts);
   cost.clusters += b.clusters.size();
 }
 

@@ -1,4 +1,4 @@
-// Pointshell of body B against the voxmap of body A: the innermost loop.
+// Pointshell of body B against the voxmap of body A: the narrow phase.
 //
 // Source: Voxmap PointShell (McNeely et al. 1999), tangent-plane force; dissertation section 8.2.2 (a list of collision
 // pairs is returned, separately from summing them). Everything in the list is in the body coordinates of A.
@@ -25,13 +25,13 @@
 namespace verisim {
 
 /// The contacts of one pair of bodies in one frame, as columns. Capacity is fixed when it is made; nothing grows later.
-/// Only the first `size` rows mean anything: columns are kPadding longer than the capacity, so that whole vectors may
-/// be stored at the end.
+/// Only the first `size` rows are valid. Columns are kPadding longer than the capacity, so that whole vectors may be
+/// stored at the end.
 struct ContactList {                 //  unit  meaning
   std::vector<std::uint32_t> point;  //  -     pointshell point of B
   std::vector<std::uint32_t> slot;   //  -     where A's voxel is stored: block * 512 + cell
   std::vector<float> x, y, z;        //  m     the point, body coordinates of A, relative to A's grid origin
-  std::vector<float> nx, ny, nz;     //  1     normal that pushes B: unit, or what a hybrid method left of it
+  std::vector<float> nx, ny, nz;     //  1     normal that pushes B: unit, or shorter if a hybrid method changed it
   std::vector<float> depth;          //  m     > 0
   std::vector<float> fx, fy, fz;     //  N     force on B, body coordinates of A (see penalty.hpp)
   std::uint32_t size = 0;
@@ -56,14 +56,14 @@ struct ContactList {                 //  unit  meaning
 
 /// Deterministic work counts of a query: the same on every machine, for any SIMD target and number of threads.
 struct QueryCost {
-  std::uint64_t clusters = 0;    ///< clusters looked at
+  std::uint64_t clusters = 0;    ///< clusters tested
   std::uint64_t points = 0;      ///< points transformed and looked up
   std::uint64_t candidates = 0;  ///< points found in a voxel of layer <= 0
   std::uint64_t left_out = 0;    ///< contacts beyond the list's capacity (mesh_query.hpp; of voxels, none)
 };
 
-/// Bytes of bodies and contacts that a query's work goes through: a cluster's record; of a point its place and the
-/// block and layer of its voxel; of a candidate its normal and what a contact holds.
+/// Bytes of bodies and contacts that a query reads and writes: per cluster its record; per point its coordinates and
+/// the block and layer of its voxel; per candidate its normal and a contact.
 [[nodiscard]] constexpr std::uint64_t bytes_touched(const QueryCost& cost) {
   constexpr std::uint64_t kPoint = 3 * sizeof(float) + sizeof(std::uint32_t) + sizeof(Layer);
   constexpr std::uint64_t kCandidate = 3 * sizeof(float) + 2 * sizeof(std::uint32_t) + 7 * sizeof(float);

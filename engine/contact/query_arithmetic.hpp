@@ -15,8 +15,8 @@
 
 namespace verisim {
 
-/// What stays the same for all points of one query. Matrices are row-major.
-struct QueryFrame {
+/// Constants of one query. Matrices are row-major.
+struct QueryConstants {
   float voxels[9];           ///< rotation B to A divided by the voxel size [voxel/m]
   float rotation[9];         ///< rotation B to A
   double centers[9];         ///< as `voxels`, for cluster centres
@@ -31,24 +31,24 @@ struct QueryFrame {
 };
 
 /// A cluster that is not culled: its centre, in B and in A's grid.
-struct ClusterFrame {
+struct PlacedCluster {
   float center[3];           ///< m, relative to the pointshell's reference
   std::int32_t base[3];      ///< cell of the centre
   std::int32_t corner[3];    ///< first cell of the 3 x 3 x 3 bricks around it
   float local[3];            ///< the centre itself, in [-1/2, 1/2]
   float rounder[3];          ///< kRounder + base - corner
   std::uint32_t begin, end;  ///< its points
-  bool near;                 ///< do all points lie within kBrickSide cells of the base?
+  bool near;                 ///< all points lie within kBrickSide cells of the base
 };
 
-/// Added to a float below 2^22 in size it leaves the nearest integer in the sum's low bits, and taken off again, as a
-/// float: rounding and conversion in one addition, the same on every target. Added with a whole number, it leaves that
-/// much more in the bits.
+/// Added to a float below 2^22 in magnitude, it leaves the nearest integer in the low bits of the sum; subtracted
+/// again, it leaves that integer as a float. So rounding and conversion are one addition, the same on every target. If
+/// a whole number is added to it, the bits hold the sum of both.
 inline constexpr float kRounder = 0x1.8p23F;
 inline constexpr std::int32_t kRounderBits = 0x4B400000;
 
-inline QueryFrame make_query_frame(const Voxmap& a, const Pointshell& b, const Pose& X_AB) {
-  QueryFrame f{};
+inline QueryConstants make_query_constants(const Voxmap& a, const Pointshell& b, const Pose& X_AB) {
+  QueryConstants f{};
   const Matrix3d R = X_AB.rotation.toRotationMatrix();
   const double per_metre = 1 / a.voxel_size;
   const Vector3d origin = (X_AB * b.reference - a.origin) * per_metre;
@@ -85,7 +85,7 @@ struct Center {
   double x, y, z;
 };
 
-inline Center center_of(const QueryFrame& f, const Pointshell::Cluster& cluster) {
+inline Center center_of(const QueryConstants& f, const Pointshell::Cluster& cluster) {
   const double x = cluster.center.x();
   const double y = cluster.center.y();
   const double z = cluster.center.z();
@@ -95,7 +95,7 @@ inline Center center_of(const QueryFrame& f, const Pointshell::Cluster& cluster)
 }
 
 /// Along axis i; g: the centre [voxel].
-inline void place_axis(double g, int i, ClusterFrame& c) {
+inline void place_axis(double g, int i, PlacedCluster& c) {
   c.base[i] = floor_limited(g);
   c.corner[i] = ((c.base[i] >> kBrickShift) - 1) * kBrickSide;
   c.rounder[i] = kRounder + static_cast<float>(c.base[i] - c.corner[i]);
@@ -104,7 +104,7 @@ inline void place_axis(double g, int i, ClusterFrame& c) {
 }
 
 /// Written in place: a returned struct would be copied in wide loads of narrow stores, which the CPU has to wait for.
-inline void place(const Pointshell::Cluster& cluster, const Center& center, ClusterFrame& c) {
+inline void place(const Pointshell::Cluster& cluster, const Center& center, PlacedCluster& c) {
   for (int i = 0; i < 3; ++i) c.center[i] = cluster.center[i];
   place_axis(center.x, 0, c);
   place_axis(center.y, 1, c);
@@ -117,11 +117,11 @@ inline std::int32_t clamp_cell(std::int32_t cell, std::int32_t last) {
   return cell < 0 ? 0 : cell > last ? last : cell;
 }
 
-inline std::int32_t brick_of(const QueryFrame& f, const std::int32_t cell[3]) {
+inline std::int32_t brick_of(const QueryConstants& f, const std::int32_t cell[3]) {
   return (cell[0] >> kBrickShift) + (cell[1] >> kBrickShift) * f.row + (cell[2] >> kBrickShift) * f.slice;
 }
 
-inline std::uint32_t slot_of(const QueryFrame& f, const std::int32_t cell[3]) {
+inline std::uint32_t slot_of(const QueryConstants& f, const std::int32_t cell[3]) {
   const std::int32_t in_brick = (cell[0] & 7) | (cell[1] & 7) << 3 | (cell[2] & 7) << 6;
   return f.brick_block[brick_of(f, cell)] << 9 | static_cast<std::uint32_t>(in_brick);
 }

@@ -242,7 +242,7 @@ std::vector<NamedArray> to_tables(const Part& part) {
   w.add("color", std::vector<float>(part.color.begin(), part.color.end()), 0, "1", "Red, green, blue, opacity");
   const std::vector<std::uint8_t> flags = {std::uint8_t{part.watertight}, std::uint8_t{part.exact}};
   w.add("flags", flags, 0, "1", "Watertight; from exact geometry");
-  w.add("notes", bytes_of(part.notes), 0, "1", "What was repaired or questioned: UTF-8, one sentence a line");
+  w.add("notes", bytes_of(part.notes), 0, "1", "What was repaired or is doubtful: UTF-8, one sentence a line");
   return std::move(w.tables);
 }
 

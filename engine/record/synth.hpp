@@ -1,6 +1,5 @@
-// Synthesized haptic traces: motions whose every sample is a formula of time, for scenes that no hand was recorded for
-// and for tests that need to know the answer. Pinned functions and named random streams: same parameters and seed, same
-// bits, everywhere.
+// Synthesized haptic traces: every sample is a formula of time. For scenes without a recorded hand, and for tests that
+// need a known answer. Pinned functions and named random streams: equal parameters and seed give equal bits everywhere.
 #pragma once
 
 #include <cstdint>

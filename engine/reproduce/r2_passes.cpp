@@ -20,7 +20,8 @@ struct Batch {
   std::vector<double> rates;  ///< passes per second, seed by seed
 };
 
-/// The trial once per seed, all in one run file (the last seed's stays) and one table that tells how to get each again.
+/// The trial once per seed. All write to one run file, of which the last seed's remains, and a table tells how to
+/// repeat each.
 Batch run_batch(const Workshop& workshop, const Fit& fit, const char* hybrid, std::uint64_t seeds, double duration) {
   const std::string name =
       fmt::format("r2_{}_clearance_{:g}mm_voxel_{:g}mm", hybrid, 1e3 * fit.clearance, 1e3 * fit.voxel_size);

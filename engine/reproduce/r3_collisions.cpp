@@ -1,4 +1,4 @@
-// R3: collisions of voxels in one run, and how many of them had to be recognized anew (section 6.5).
+// R3: collisions of voxels in one run, and how many of them needed recognition (section 6.5).
 #include <fmt/format.h>
 
 #include "engine/reproduce/reproductions.hpp"

@@ -1,8 +1,8 @@
-// R5: what the approach before the dissertation's cost: a force blended from a constraint solver's (the loop fell below
-// 500 Hz, often to 100 Hz, while the pin went in), and finding which entities pass through which voxels (minutes).
+// R5: costs of the approach before the dissertation's: a blended force from a constraint solver (the loop fell below
+// 500 Hz, often to 100 Hz, while the pin went in), and the association of voxels with entities (minutes).
 //
 // Both exist here as well: hybrid = "blend" with a solver written for the purpose, and the association of every surface
-// voxel. The comparison tells how much of the published cost was the idea's and how much its CAD kernel's.
+// voxel. The comparison separates the cost of the method from that of its CAD kernel.
 #include <algorithm>
 #include <chrono>
 

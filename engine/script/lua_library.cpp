@@ -1,5 +1,5 @@
-// Which part of Lua's standard library a scenario sees, and what stands in for the part that is not the same in every
-// run: addresses, clocks, the order of pairs, random numbers, files.
+// The part of Lua's standard library that a scenario sees, with replacements for what differs between runs: addresses,
+// clocks, the order of pairs, random numbers, files.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -214,7 +214,7 @@ int load_text(lua_State* L) {
   return 1;
 }
 
-// Nothing to steer: when memory is collected must not depend on the script, nor the script on it.
+// No control: garbage collection must not depend on the script, nor the script on it.
 int collect_garbage(lua_State* L) {
   lua_pushnumber(L, 0);
   return 1;

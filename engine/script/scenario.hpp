@@ -42,7 +42,7 @@ class Scenario {
   [[nodiscard]] const std::string& outcome() const;   ///< outcome("…"); empty if none was said
   [[nodiscard]] bool finished() const;  ///< the script asked to stop (outcome with stop, simulation:stop())
   [[nodiscard]] const std::vector<Measure>& measures() const;
-  [[nodiscard]] std::vector<std::string> notices() const;  ///< questioned or ignored things, each once
+  [[nodiscard]] std::vector<std::string> notices() const;  ///< warnings and ignored options, each once
 
  private:
   struct Implementation;

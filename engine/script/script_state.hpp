@@ -1,5 +1,5 @@
-// What the words of a scenario act on: the scene while it is built, then the simulation while it runs. One per script;
-// every word reaches it by ScriptState::of(L).
+// The state on which the words of a scenario act: the scene while it is built, then the running simulation. One per
+// script; every word gets it by ScriptState::of(L).
 #pragma once
 
 #include <map>
@@ -24,9 +24,9 @@ namespace verisim::script {
 /// Work units that each action, and each chunk of the run buffer, may spend in one script frame.
 inline constexpr std::uint64_t kFrameWork = 10'000'000;
 
-/// What a line of /events costs a script: it is kept outside Lua's memory.
+/// Work units for a line of /events, which is stored outside Lua's memory.
 inline constexpr std::uint64_t kEventWork = 500;
-/// Frame actions that may be there at one time.
+/// Largest number of frame actions at one time.
 inline constexpr std::size_t kActionsMax = 1000;
 
 struct BodyHandle {
@@ -43,7 +43,7 @@ struct FrameActionHandle {
   std::uint64_t id;
 };
 
-/// Stands for a material, a light, a font …: every member of it is again such a thing, every call gives one.
+/// Placeholder for a material, a light, a font …: every member and every call of it is again a placeholder.
 struct Drawing {};
 
 class ScriptState : public Sandbox {
@@ -57,7 +57,7 @@ class ScriptState : public Sandbox {
   void finish();
   void attach(Simulation& simulation);
 
-  /// A questioned or ignored thing: told once, on stderr by the caller of Scenario::notices and in /events.
+  /// Records a warning or an ignored option once, for stderr (by the caller of Scenario::notices) and /events.
   void notice(const std::string& text);
   void event(const std::string& kind, const std::string& text);
   /// Runs one piece of the running scene's script; a failure becomes an event and the simulation goes on.
@@ -78,7 +78,7 @@ class ScriptState : public Sandbox {
   Inputs& inputs;
   Scene scene;
   bool scene_taken = false;
-  std::vector<DevicePointer> devices;            ///< in the order of addDevice
+  std::vector<DevicePointer> devices;                      ///< in the order of addDevice
   std::vector<std::shared_ptr<CompanionNode>> companions;  ///< in the order of their words
   std::vector<std::pair<DevicePointer, std::size_t>> grasps;
   std::vector<std::shared_ptr<CollisionCounter>> counters;

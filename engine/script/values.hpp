@@ -1,5 +1,5 @@
-// Values between Lua and C++: objects of the engine as Lua userdata, and the checked reading of what a script gives.
-// Everything here raises a Lua error that names the word, the field, what it is and what it must be.
+// Values between Lua and C++: objects of the engine as Lua userdata, and checked reading of a script's values. Errors
+// are Lua errors that name the word, the field, its value and the required value.
 #pragma once
 
 #include <memory>
@@ -100,7 +100,7 @@ T* get_if(lua_State* L, int index) {
 void push_matrix_of(lua_State* L, const Pose& pose);
 [[nodiscard]] Pose pose_of_matrix(lua_State* L, const Matrix& matrix, const std::string& what);
 
-/// What stands at `index`, for messages: "a text ('abc')", "nothing", "a body".
+/// Description of the value at `index` for messages: "a text ('abc')", "nothing", "a body".
 [[nodiscard]] std::string described(lua_State* L, int index);
 
 /// The T at `index`; `what` begins the message if something else is there.

@@ -49,8 +49,7 @@ int update_frame_actions(lua_State*) {
   return 0;
 }  // the frame clock updates them
 
-// --- run buffer: chunks run at the next script frame, in order; unlike VR JuggLua's it drops none
-// -----------------------
+// --- run buffer: chunks run at the next script frame, in order. Unlike VR JuggLua's it drops none. -------------------
 
 int add_string(lua_State* L) {
   ScriptState& state = ScriptState::of(L);

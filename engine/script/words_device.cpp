@@ -1,4 +1,4 @@
-// Devices, the filters that wrap them, and what holds what.
+// Devices, the filters that wrap them, and grasps.
 #include <cmath>
 
 #include "engine/device/hardware.hpp"

@@ -44,7 +44,7 @@ void read_named(lua_State* L, Fields& fields, const char* field, const Values& v
   if (const auto name = fields.text(field)) value = named(L, field, *name, values);
 }
 
-// Words of SPARTA that change nothing here: said once, so that nobody thinks they do.
+// Words of SPARTA that have no effect here, reported once.
 void accept_without_effect(lua_State* L, Fields& fields, std::initializer_list<const char*> names) {
   for (const char* name : names)
     if (fields.accepted(name))
@@ -88,7 +88,8 @@ int define_simulation_parameters(lua_State* L) {
   return 0;
 }
 
-// A name becomes a folder of the run file and a side of 'A~B': what would break those is replaced, with a notice.
+// A name becomes a folder of the run file and a side of 'A~B'. Characters that would break those are replaced, with a
+// notice.
 std::string recordable(lua_State* L, const std::string& name) {
   std::string result = name;
   for (char& c : result)
@@ -106,7 +107,7 @@ bool name_taken(const Scene& scene, const std::string& name) {
 
 std::string free_name(const Scene& scene, const std::string& stem) {
   std::string name = stem;
-  // From the number of bodies on, so that many of one stem are named in one look each.
+  // Numbers start at the number of bodies, so that each of many bodies of one stem needs one look-up.
   for (std::size_t i = scene.bodies.size() + 1; name_taken(scene, name); ++i) name = fmt::format("{}{}", stem, i);
   return name;
 }
@@ -130,7 +131,7 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
     lua_pop(L, 1);
   }
   PlacedParts placed_parts = resolve(nodes, state.inputs);
-  // Parts lie outside Lua's memory: they are paid for as work, so that a loop cannot fill the machine with bodies.
+  // Charged as work, because parts lie outside Lua's memory: a loop must not fill the machine with bodies.
   std::size_t triangles = 0;
   for (const Part& part : placed_parts.parts) triangles += part.mesh.triangles.size();
   state.charge(L, 20'000 + triangles + 10 * state.scene.bodies.size());

@@ -101,7 +101,7 @@ int wii_head(lua_State* L) {
   return 1;
 }
 
-/// Where the head is believed to be; where the remote stands, as long as nothing is known.
+/// The tracked position of the head; that of the remote until there is one.
 Pose pose_of(const HeadNode& node) {
   if (node.head == nullptr || !node.head->estimate().pose.position.allFinite()) return node.X_WL;
   return node.head->world_pose();

@@ -7,8 +7,8 @@
 //     response   their forces are computed and summed      act_on_normals or act_on_forces, then act_on_sides
 //     exact      precise contacts are solved               precise
 //
-// Which method acts on a pair: of the two bodies' methods that of lower precedence; none ("off") while one of the two is
-// switched off, or if a body has no entities. The order: off 0, restore 10, blend 20, exact 30 (methods.cpp).
+// Which method acts on a pair: of the two bodies' methods that of lower precedence; none ("off") while one of the two
+// is switched off, or if a body has no entities. The order: off 0, restore 10, blend 20, exact 30 (methods.cpp).
 //
 // To add one: see README.md.
 #pragma once
@@ -42,7 +42,7 @@ struct Pair {
   const Body& first;
   const Body& second;
   const CollisionLink& contact;
-  [[nodiscard]] const Body& map() const { return contact.first_is_map() ? first : second; }      ///< A: has the voxmap
+  [[nodiscard]] const Body& map() const { return contact.first_is_map() ? first : second; }     ///< A: has the voxmap
   [[nodiscard]] const Body& points() const { return contact.first_is_map() ? second : first; }  ///< B: has the points
 };
 

@@ -110,8 +110,8 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.selectable = description.selectable && !description.fixed;
   const bool grasped =
       std::any_of(scene.grasps.begin(), scene.grasps.end(), [&](const Grasp& g) { return g.body == index; });
-  body.can_move = !description.fixed &&
-                  (p.all_bodies_are_dynamic || grasped || (body.selectable && !scene.devices.empty()));
+  body.can_move =
+      !description.fixed && (p.all_bodies_are_dynamic || grasped || (body.selectable && !scene.devices.empty()));
   for (const Part& part : description.parts)
     for (const Vector3d& v : part.mesh.vertices) body.bounds_B.include(v);
   const CouplingLimits limits{p.max_stiffness, p.max_angular_stiffness, p.max_coupling_force, p.max_coupling_torque};
@@ -161,9 +161,9 @@ void make_entities(const BodyDescription& description, const World& world, Body&
   exact::BodyOptions options;
   options.spacing = description.voxel_size;
   auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
-  if (precise->knows_anything()) body.exact = std::move(precise);
-  const auto solved = std::count_if(world.bodies.begin(), world.bodies.end(),
-                                    [](const Body& b) { return b.exact && b.can_move; });
+  if (precise->has_precise_faces()) body.exact = std::move(precise);
+  const auto solved =
+      std::count_if(world.bodies.begin(), world.bodies.end(), [](const Body& b) { return b.exact && b.can_move; });
   if (solved > exact::ConvexStep::kBodiesMax)
     fail(ErrorKind::input, "'{}': more than {} moving bodies are 'exact'; give the others hybrid = \"restore\"",
          body.name, exact::ConvexStep::kBodiesMax);

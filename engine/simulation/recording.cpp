@@ -13,10 +13,10 @@ void declare_body(const World& world, const Stages& stages, std::size_t i, Colum
   const std::string path = "/state/body/" + body.name;
   columns.add(path + "/pose", "m, 1", "world pose of the body coordinates: position, quaternion x y z w",
               [&body] { return body.rigid.pose(); });
-  columns.add(path + "/twist", "m/s, rad/s", "velocity of the centre of mass, angular velocity; world",
-              [&body] { return Twist{body.rigid.v_C, body.rigid.omega}; });
-  columns.add(path + "/force", "N, N m",
-              "contact wrench on the body as applied, about its centre of mass; world",
+  columns.add(path + "/twist", "m/s, rad/s", "velocity of the centre of mass, angular velocity; world", [&body] {
+    return Twist{body.rigid.v_C, body.rigid.omega};
+  });
+  columns.add(path + "/force", "N, N m", "contact wrench on the body as applied, about its centre of mass; world",
               [&stages, i] { return stages.reactions.on_body(i); });
 }
 
@@ -47,9 +47,9 @@ void declare_link(const World& world, const Stages& stages, std::size_t l, Colum
               [&stages, l] { return stages.methods.look_ups(l).hits; });
   columns.add(path + "/cache_misses", "1", "constraint look-ups that had to be recognized",
               [&stages, l] { return stages.methods.look_ups(l).misses; });
-  columns.add(path + "/constraint", "1", "strongest recognized constraint; none where the method is exact or off",
-              [&stages, l] { return static_cast<std::uint8_t>(stages.methods.look_ups(l).constraint); },
-              constraint_names);
+  columns.add(
+      path + "/constraint", "1", "strongest recognized constraint; none where the method is exact or off",
+      [&stages, l] { return static_cast<std::uint8_t>(stages.methods.look_ups(l).constraint); }, constraint_names);
   columns.add(path + "/alignment", "1", "alignment alpha of that constraint",
               [&stages, l] { return stages.methods.look_ups(l).alpha; });
   columns.add(path + "/max_penetration", "m", "deepest contact", [&stages, l] { return depth_of(stages, l); });
@@ -84,8 +84,13 @@ Columns declare(const World& world, const Stages& stages, const FrameCost& cost)
 Schema schema_of(const Columns& columns) {
   Schema schema;
   for (const Column& column : columns.state()) schema.add(column);
-  schema.add({"/state/hash", Dtype::u64, 1, "1",
-              "XXH3-64 of all values of /state in this row, seeded with the hash of the row before", 0, {}});
+  schema.add({"/state/hash",
+              Dtype::u64,
+              1,
+              "1",
+              "XXH3-64 of all values of /state in this row, seeded with the hash of the row before",
+              0,
+              {}});
   for (const Column& column : columns.other()) schema.add(column);
   return schema;
 }

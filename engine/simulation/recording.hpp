@@ -1,5 +1,5 @@
-// What a row of a run file holds (INTERFACES section 2), each fact declared once (base/columns.hpp), and the sums over the
-// run. The row's state bytes, chained to the hash of the row before, are the state hash.
+// What a row of a run file holds (INTERFACES section 2), each fact declared once (base/columns.hpp), and the sums over
+// the run. The row's state bytes, chained to the hash of the row before, are the state hash.
 #pragma once
 
 #include <vector>

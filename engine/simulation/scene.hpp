@@ -70,8 +70,8 @@ struct Grasp {
 
 struct Scene {
   SimulationParameters parameters;
-  std::vector<BodyDescription> bodies;            ///< in the order of addObject
-  std::vector<std::shared_ptr<Device>> devices;   ///< in the order of addDevice: outermost filter of each chain
+  std::vector<BodyDescription> bodies;                 ///< in the order of addObject
+  std::vector<std::shared_ptr<Device>> devices;        ///< in the order of addDevice: outermost filter of each chain
   std::vector<std::shared_ptr<Companion>> companions;  ///< advanced beside the loop, in this order
   std::vector<Grasp> grasps;
   double grasp_distance = 0.1;  ///< m, handle to body's nearest point, for button grasping

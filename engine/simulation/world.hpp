@@ -1,8 +1,9 @@
 // What is simulated, as plain data: bodies, the pairs of them that may meet, the hands that hold them, and what runs
 // beside the loop. World coordinates, SI.
 //
-// Constants stand before state. A state has one writer, named beside it: a stage of the frame (engine/simulation/stages),
-// or a script between frames through Simulation. What a stage keeps for itself, per body or per link, is the stage's.
+// Constants stand before state. A state has one writer, named beside it: a stage of the frame
+// (engine/simulation/stages), or a script between frames through Simulation. What a stage keeps for itself, per body or
+// per link, is the stage's.
 #pragma once
 
 #include <memory>
@@ -39,8 +40,8 @@ struct Body {
   std::shared_ptr<const exact::ExactBody> exact;  ///< null: not asked for, or nothing precisely known
 
   // state
-  RigidBody rigid;             ///< stages/motion; a script that puts the body elsewhere
-  bool hybrid_enabled = true;  ///< false: as if its method were off. A script
+  RigidBody rigid;              ///< stages/motion; a script that puts the body elsewhere
+  bool hybrid_enabled = true;   ///< false: as if its method were off. A script
   std::size_t held_by = kNone;  ///< hand. stages/grasping
 };
 

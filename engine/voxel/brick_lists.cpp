@@ -66,7 +66,7 @@ GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map) {
   return result;
 }
 
-// Walks twice, first to count, so that the lists have their exact size and need no sorting.
+// Two passes, the first to count: the lists get their exact size and need no sorting.
 BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks, double margin) {
   BrickLists lists;
   const auto count = static_cast<std::size_t>(bricks.cast<std::int64_t>().prod());

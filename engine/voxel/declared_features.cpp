@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "engine/base/error.hpp"
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
+#include "engine/geometry/analytic_surface.hpp"
 #include "engine/geometry/entity_check.hpp"
 #include "engine/geometry/entity_row.hpp"
 
@@ -65,8 +67,8 @@ DeclaredFeatures::Place DeclaredFeatures::place_of(const std::string& owner, con
     edges_.push_back(std::get<Edge>(entity));
   } else {
     faces_.push_back(std::get<Face>(entity));
-    met_.push_back(false);
-    lean_.push_back(0);
+    used_.push_back(false);
+    outwardness_.push_back(0);
   }
   return next;
 }
@@ -82,30 +84,21 @@ FeatureSetId DeclaredFeatures::add(const std::string& owner, std::span<const Ent
   return sets_.intern(places);
 }
 
-/// Adds a voxel's say about whether the face is a hole. A voxel where faces meet says little or the contrary.
-void DeclaredFeatures::weigh(std::size_t face, const Vector3d& p, const Vector3d& inward) {
-  Surface& surface = faces_[face].surface;
-  const auto from_axis = [&](const Vector3d& point, const Vector3d& direction) {
-    const Vector3d arm = p - point;
-    return Vector3d((arm - arm.dot(direction) * direction).normalized());
-  };
-  const auto add = [&](bool& hole, const Vector3d& away) {
-    lean_[face] += away.dot(inward);
-    hole = lean_[face] > 0;
-  };
-  if (auto* cylinder = std::get_if<Cylinder>(&surface)) {
-    add(cylinder->hole, from_axis(cylinder->point, cylinder->direction));
-  } else if (auto* cone = std::get_if<Cone>(&surface)) {
-    add(cone->hole, from_axis(cone->point, cone->direction) - pinned::tan(cone->half_angle) * cone->direction);
-  } else if (auto* sphere = std::get_if<Sphere>(&surface)) {
-    add(sphere->hole, (p - sphere->center).normalized());
-  } else if (auto* torus = std::get_if<Torus>(&surface)) {
-    const Vector3d ring = torus->center + torus->major_radius * from_axis(torus->center, torus->direction);
-    add(torus->hole, (p - ring).normalized());
-  }
+/// Adds a voxel's inward normal to the evidence for a hole. Where faces meet, a voxel is weak or wrong evidence. On the
+/// axis of a curved face it is none: every direction leads away from it.
+void DeclaredFeatures::add_normal(std::size_t face, const Vector3d& p, const Vector3d& inward) {
+  const AnalyticSurface surface = *AnalyticSurface::from(faces_[face].surface);
+  if (!std::isfinite(surface.curvature_bound(p, 0))) return;
+  const Vector3d away = surface.side() * surface.at(p).normal;
+  outwardness_[face] += away.dot(inward);
+  std::visit(
+      [&](auto& s) {
+        if constexpr (requires { s.hole; }) s.hole = outwardness_[face] > 0;
+      },
+      faces_[face].surface);
 }
 
-/// The circle in the set that lies on the cylinder, square to its axis; null if none does.
+/// The circle in the set that lies on the cylinder, perpendicular to its axis; null if there is none.
 const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const Place> set) const {
   constexpr double kSame = 1e-9;  // m and rad: what was declared by the same numbers
   for (const Place place : set) {
@@ -118,35 +111,40 @@ const Circle* DeclaredFeatures::rim_of(const Cylinder& cylinder, std::span<const
   return nullptr;
 }
 
-/// Widens the face's bounds to a voxel: along an axis all of it, but up to the rim where the voxel has one; around an
-/// axis everything is taken as covered.
+/// Extends the face's bounds to a voxel. Along an axis to all of the voxel, or to the rim if its set has one. Around an
+/// axis the face is taken as closed.
 void DeclaredFeatures::extend(std::size_t face, std::span<const Place> set, const Vector3d& p, double half_side) {
   Face& f = faces_[face];
   const auto include = [&](std::array<double, 2>& range, double low, double high) {
-    range[0] = met_[face] ? std::min(range[0], low) : low;
-    range[1] = met_[face] ? std::max(range[1], high) : high;
+    range[0] = used_[face] ? std::min(range[0], low) : low;
+    range[1] = used_[face] ? std::max(range[1], high) : high;
   };
   const auto widen = [&](std::array<double, 2>& range, double at) { include(range, at - half_side, at + half_side); };
-  if (const auto* plane = std::get_if<Plane>(&f.surface)) {
-    widen(f.u_range, (p - plane->point).dot(plane->x_axis));
-    widen(f.v_range, (p - plane->point).dot(plane->normal.cross(plane->x_axis)));
-    return;
-  }
-  f.u_range = {0, 2 * pinned::kPi};
-  if (const auto* cylinder = std::get_if<Cylinder>(&f.surface)) {
-    const auto along = [&](const Vector3d& q) { return (q - cylinder->point).dot(cylinder->direction); };
-    if (const Circle* rim = rim_of(*cylinder, set)) {
-      include(f.v_range, along(rim->center), along(rim->center));
-    } else {
-      widen(f.v_range, along(p));
-    }
-  } else if (const auto* cone = std::get_if<Cone>(&f.surface)) {
-    widen(f.v_range, (p - cone->point).dot(cone->direction));
-  } else if (std::holds_alternative<Sphere>(f.surface)) {
-    f.v_range = {-0.5 * pinned::kPi, 0.5 * pinned::kPi};
-  } else {
-    f.v_range = {0, 2 * pinned::kPi};
-  }
+  constexpr std::array<double, 2> kAround = {0, 2 * pinned::kPi};
+  const auto along = [](const auto& s, const Vector3d& q) { return (q - s.point).dot(s.direction); };
+  std::visit(Overloaded{[&](const Plane& s) {
+                          widen(f.u_range, (p - s.point).dot(s.x_axis));
+                          widen(f.v_range, (p - s.point).dot(s.normal.cross(s.x_axis)));
+                        },
+                        [&](const Cylinder& s) {
+                          f.u_range = kAround;
+                          if (const Circle* rim = rim_of(s, set)) {
+                            include(f.v_range, along(s, rim->center), along(s, rim->center));
+                          } else {
+                            widen(f.v_range, along(s, p));
+                          }
+                        },
+                        [&](const Cone& s) {
+                          f.u_range = kAround;
+                          widen(f.v_range, along(s, p));
+                        },
+                        [&](const Sphere&) {
+                          f.u_range = kAround;
+                          f.v_range = {-0.5 * pinned::kPi, 0.5 * pinned::kPi};
+                        },
+                        [&](const Torus&) { f.u_range = f.v_range = kAround; },
+                        [](const OtherSurface&) { VERISIM_ASSERT(!"refused when it was added"); }},
+             f.surface);
 }
 
 void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, FeatureSetId id) {
@@ -160,9 +158,9 @@ void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, Featur
   for (const Place place : set) {
     if (place % 2 != 0) continue;
     const std::size_t face = place / 2;
-    weigh(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
+    add_normal(face, p, Vector3d(shell.nx[voxel], shell.ny[voxel], shell.nz[voxel]));
     extend(face, set, p, 0.5 * body.voxmap.voxel_size);
-    met_[face] = true;
+    used_[face] = true;
   }
 }
 

@@ -9,8 +9,8 @@ constexpr std::array kTurns = {0.0, 0.6, -0.6};  // rad of yaw to start from: Ga
 // Above this, per sighted coordinate, blobs are not this head: far outside any pixel noise.
 constexpr double kCostMax = 12;
 
-/// Depth-first over the ways to name `count` LEDs.
-struct Naming {
+/// Depth-first over the assignments of blobs to the first `count` LEDs.
+struct AssignmentSearch {
   const Reading& reading;
   const TrackerSettings& settings;
   const Pinhole& pinhole;
@@ -71,9 +71,9 @@ Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, c
                       const PoseSolver& solver, const Upright& upright) {
   const int count = std::min(settings.leds.count, reading.blob_count);
   if (count < 3) return {};
-  Naming naming{reading, settings, pinhole, solver, upright, count};
-  naming.descend(0, 0);
-  return naming.best;
+  AssignmentSearch search{reading, settings, pinhole, solver, upright, count};
+  search.descend(0, 0);
+  return search.best;
 }
 
 }  // namespace verisim::wii

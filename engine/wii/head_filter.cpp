@@ -11,13 +11,13 @@ namespace {
 // lively ones, higher lets the pixel noise of the calm ones through.
 constexpr double kLinearDensity = 0.7;   // m^2/s^3
 constexpr double kAngularDensity = 0.5;  // rad^2/s^3
-// Turning that the remaining LEDs cannot tell from moving: to allow what heads do at their fastest would let every
-// motion be explained as a turn.
+// While LEDs are missing, a turn looks like a motion. With the density of fast heads the filter would explain every
+// motion as a turn.
 constexpr double kGuessedDensity = 0.1;  // rad^2/s^3
 constexpr double kUnseenDensity = 8;     // times as much once nothing is seen: the head may do anything
 constexpr double kDecay = 0.4;           // s
-// Two of three LEDs tell turning from coming nearer only by what the third said before: a turning that is carried on
-// too long becomes an error of depth.
+// Two LEDs of three cannot tell a turn from coming nearer. A turn that is predicted for too long becomes an error of
+// depth.
 constexpr double kPairDecay = 0.08;  // s
 constexpr double kSlow = 0.1;        // s
 constexpr double kSpinMax = 15;      // rad/s
@@ -79,7 +79,8 @@ void HeadFilter::slow_down(double keep, View view) {
   P_.middleRows<3>(9) *= keep;
   P_.middleCols<3>(9) *= keep;
   if (view == View::pair) return;
-  // One LED still shows motion across its ray: to damp that would make a lie of it, and a lie of depth to explain it.
+  // One LED still shows motion across its ray. Damping that too would falsify it, and the depth that is made to explain
+  // it.
   const Vector3d ray = X_RH_.position.normalized();
   const Matrix3d damp = view == View::none ? Matrix3d(keep * Matrix3d::Identity())
                                            : Matrix3d(Matrix3d::Identity() - (1 - keep) * ray * ray.transpose());

@@ -18,9 +18,9 @@ constexpr double kGateGrowth = 1500;      // pixel per s without a report
 constexpr double kTurnRate = 0.3;         // rad/s: how fast a yaw that is no longer seen becomes unknown
 constexpr double kStillKnown = 0.02;      // rad, of a yaw that was seen one report ago
 constexpr double kCostPerLedMax = 12;     // per LED seen: beyond any pixel noise, so not this head
-constexpr int kStrangeReportsMax = 5;     // reports before the head is sought anew beside a strange light
+constexpr int kUnassignedReportsMax = 5;  // reports with unassigned blobs before acquisition
 constexpr double kRollSigma = 0.5;        // rad
-constexpr double kPriorWidth = 2;         // times the settings' sigmas: where yaw is seen, belief should hardly count
+constexpr double kPriorWidth = 2;  // times the settings' sigmas: where yaw is seen, the prior should hardly count
 
 class MultiPoint final : public TrackerBase {
  public:
@@ -44,11 +44,11 @@ class MultiPoint final : public TrackerBase {
     if (remote >= remotes_) return;
     views_[static_cast<std::size_t>(remote)] = {reading, t};
     if (!reports(t, remote) || !gravity(0).known()) return;
-    upright_ = believe();
+    upright_ = prior();
     found_ = {};
     if (followed_ && t - t_followed_ <= kLostHeadMemory) {
       found_ = follow(t);
-      if (strange_ >= kStrangeReportsMax) seek_again(t);
+      if (unassigned_ >= kUnassignedReportsMax) reacquire(t);
     } else {
       found_ = acquire(t);
     }
@@ -63,8 +63,8 @@ class MultiPoint final : public TrackerBase {
     return t - views_[0].t > kBothSilent;
   }
 
-  /// Yaw and pitch are believed to be near zero …
-  [[nodiscard]] Upright believe() const {
+  /// Yaw and pitch are near zero …
+  [[nodiscard]] Upright prior() const {
     Upright u;
     u.C_LR = gravity(0).C_LR();
     u.sigma_x = kPriorWidth * settings().yaw_sigma;
@@ -72,8 +72,8 @@ class MultiPoint final : public TrackerBase {
     u.sigma_roll = kRollSigma;
     return u;
   }
-  /// … and, when they were seen a moment ago and now are not, near what they were.
-  void believe_last(double t, Upright& u) const {
+  /// … or, when they were seen a moment ago and now are not, near what they were.
+  void take_last_as_prior(double t, Upright& u) const {
     const Matrix3d R_LH = u.C_LR * X_RH_.rotation.toRotationMatrix();
     const double drift = kTurnRate * (t - t_full_);
     u.row_x = R_LH(2, 0);
@@ -83,14 +83,14 @@ class MultiPoint final : public TrackerBase {
   }
 
   [[nodiscard]] SolvedPose acquire(double t) {
-    strange_ = 0;
+    unassigned_ = 0;
     if (remotes_ == 2) return acquire_pairs(t);
     seen_fully_ = true;
     return acquire_head(views_[0].reading, settings(), pinhole(), solver_, upright_).solved;
   }
 
-  /// LEDs are missing while other lights are in view: one of those that are followed may be a lamp.
-  void seek_again(double t) {
+  /// LEDs are missing and blobs unassigned: a blob that is followed may be clutter.
+  void reacquire(double t) {
     const bool seen_fully = seen_fully_;
     const SolvedPose other = acquire(t);
     if (other.found)
@@ -103,18 +103,18 @@ class MultiPoint final : public TrackerBase {
     std::array<Sighting, kSightingsMax> sightings;
     int n = 0;
     int n_most = 0;
-    bool strange = false;
+    bool unassigned = false;
     for (int remote = 0; remote < remotes_; ++remote) {
       const int here = follow_in(t, remote, std::span(sightings).subspan(static_cast<std::size_t>(n)));
-      strange = strange ||
-                (here < settings().leds.count && views_[static_cast<std::size_t>(remote)].reading.blob_count > here);
+      unassigned = unassigned ||
+                   (here < settings().leds.count && views_[static_cast<std::size_t>(remote)].reading.blob_count > here);
       n_most = std::max(n_most, here);
       n += here;
     }
-    strange_ = strange ? strange_ + 1 : 0;
-    if (n_most < 2) return {};  // one light in each of two images may be a lamp
+    unassigned_ = unassigned ? unassigned_ + 1 : 0;
+    if (n_most < 2) return {};  // one blob in each of two images may be clutter
     seen_fully_ = n >= 3;
-    if (!seen_fully_) believe_last(t, upright_);
+    if (!seen_fully_) take_last_as_prior(t, upright_);
     return solver_.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright_, predicted(t));
   }
 
@@ -202,7 +202,7 @@ class MultiPoint final : public TrackerBase {
   SolvedPose found_;
   bool seen_fully_ = false;  ///< this report's sightings determine yaw
   bool followed_ = false;
-  int strange_ = 0;  ///< reports in a row in which LEDs were missing and other lights in view
+  int unassigned_ = 0;  ///< reports in a row with missing LEDs and unassigned blobs
   double t_followed_ = 0;
   double t_full_ = 0;
   Pose X_RH_;  ///< followed pose

@@ -64,11 +64,11 @@ bool PoseSolver::accumulate(std::span<const Sighting> sightings, const Upright& 
   }
   // Entry (k, j) of R_LH moves with a rotation vector w as w . (column_j x e_k), both in L.
   const Matrix3d R_LH = upright.C_LR * R_RH;
-  const auto add_entry = [&](int k, int j, double believed, double sigma) {
+  const auto add_entry = [&](int k, int j, double prior, double sigma) {
     const Vector3d gradient_L = R_LH.col(j).cross(Vector3d::Unit(k));
     Vector6d row;
     row << Vector3d::Zero(), upright.C_LR.transpose() * gradient_L;
-    normal.add(row, believed - R_LH(k, j), 1 / (sigma * sigma));
+    normal.add(row, prior - R_LH(k, j), 1 / (sigma * sigma));
   };
   add_entry(2, 0, upright.row_x, upright.sigma_x);
   add_entry(2, 1, upright.row_y, upright.sigma_y);

@@ -45,7 +45,7 @@ struct LedLayout {
   }
 };
 
-/// What a tracker may know. Noise figures are beliefs: they set the covariance (and the gains of scaat).
+/// What a tracker may know. Noise figures are assumptions: they set the covariance (and the gains of scaat).
 struct TrackerSettings {
   LedLayout leds;
   FieldOfView fov;

@@ -1,4 +1,4 @@
-// Trackers against the virtual Wii Remote: errors, availability, latency, honesty of the covariance, cost.
+// Trackers against the virtual Wii Remote: errors, availability, latency, consistency of the covariance, time.
 #pragma once
 
 #include <string>

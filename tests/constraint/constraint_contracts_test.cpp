@@ -6,7 +6,7 @@
 #include "engine/constraint/blend.hpp"
 #include "engine/constraint/recognition.hpp"
 #include "engine/constraint/regression.hpp"
-#include "engine/constraint/restore_run.hpp"
+#include "engine/constraint/restore_batch.hpp"
 #include "tests/constraint/contacts.hpp"
 #include "tests/constraint/parts.hpp"
 #include "tests/support/broken.hpp"
@@ -36,11 +36,11 @@ TEST(AlignmentDeathTest, JudgesAConstraintByAVoxel) {
 TEST(AlignmentDeathTest, OnlyAPinStandsBesideAHole) {
   const Constraint c = pin_in_hole();
   const Misalignment m = misalignment(c, Pose());
-  EXPECT_BROKEN(wholly_beside(Constraint(), m, {}), "round.kind != ConstraintKind::none");
+  EXPECT_BROKEN(clear_of_hole(Constraint(), m, {}), "round.kind != ConstraintKind::none");
   Constraint planes = c;
   planes.pairing = Pairing::plane_plane;
-  EXPECT_BROKEN(wholly_beside(planes, m, {}), "round.pairing == Pairing::axis_axis");
-  EXPECT_BROKEN(wholly_beside(c, m, {0, 10}), "is_positive(scales.voxel_size)");
+  EXPECT_BROKEN(clear_of_hole(planes, m, {}), "round.pairing == Pairing::axis_axis");
+  EXPECT_BROKEN(clear_of_hole(c, m, {0, 10}), "is_positive(scales.voxel_size)");
 }
 
 TEST(RestorationDeathTest, NeedsAPlaceADirectionAndAShare) {
@@ -61,14 +61,14 @@ TEST(RestorationDeathTest, OfARunNeedsItsColumns) {
   contacts.add({0, 0, 0}, {0, 0, 1}, 1, 1);
   const ContactColumns c = contacts.columns();
   const ActiveConstraint active = activate(pin_in_hole(), Pose(), 1);
-  EXPECT_BROKEN(restore_run({c.x, nullptr, c.z, c.fx, c.fy, c.fz, 1}, active),
+  EXPECT_BROKEN(restore_batch({c.x, nullptr, c.z, c.fx, c.fy, c.fz, 1}, active),
                 "run.count == 0 || (run.x != nullptr && run.y != nullptr && run.z != nullptr)");
-  EXPECT_BROKEN(restore_run({c.x, c.y, c.z, c.fx, c.fy, nullptr, 1}, active),
+  EXPECT_BROKEN(restore_batch({c.x, c.y, c.z, c.fx, c.fy, nullptr, 1}, active),
                 "run.count == 0 || (run.fx != nullptr && run.fy != nullptr && run.fz != nullptr)");
   ActiveConstraint too_much = active;
   too_much.alpha = 1.5;
-  EXPECT_BROKEN(restore_run({c.x, c.y, c.z, c.fx, c.fy, c.fz, 1}, too_much), "is_fraction(active.alpha)");
-  restore_run({nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, 0}, active);
+  EXPECT_BROKEN(restore_batch({c.x, c.y, c.z, c.fx, c.fy, c.fz, 1}, too_much), "is_fraction(active.alpha)");
+  restore_batch({nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, 0}, active);
 }
 
 TEST(ReductionDeathTest, NeedsAnAlphaForEachConstraint) {
@@ -136,8 +136,7 @@ TEST(BlendDeathTest, SolvesWhatIsThereWithASpringThatPulls) {
   const Vector3d o = Vector3d::Zero();
   const std::array<Engaged, 1> engaged = {{{&c, 1, 1}}};
   EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {-1, 1, 1, 4}), "is_not_negative(parameters.stiffness)");
-  EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {1, kNaN, 1, 4}),
-                "is_not_negative(parameters.angular_stiffness)");
+  EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {1, kNaN, 1, 4}), "is_not_negative(parameters.angular_stiffness)");
   EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {1, 1, 0, 4}), "is_positive(parameters.length)");
   EXPECT_BROKEN(constraint_force(engaged, kStretched, o, {}), "is_placement(X_AB)");
   EXPECT_BROKEN(constraint_force(engaged, Pose(), {0, kNaN, 0}, {}), "is_finite(center)");

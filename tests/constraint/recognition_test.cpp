@@ -35,8 +35,8 @@ bool same(const ConstraintSide& a, const ConstraintSide& b) {
 bool same(const Constraint& a, const Constraint& b) {
   if (a.kind != b.kind) return false;
   if (a.kind == ConstraintKind::none) return true;
-  return a.pairing == b.pairing && a.field == b.field && a.guide == b.guide && a.pin == b.pin &&
-         a.pushes_only == b.pushes_only && a.clearance == b.clearance && same(a.a, b.a) && same(a.b, b.b);
+  return a.pairing == b.pairing && a.field == b.field && a.normal_source == b.normal_source && a.pin == b.pin &&
+         a.unilateral == b.unilateral && a.clearance == b.clearance && same(a.a, b.a) && same(a.b, b.b);
 }
 
 /// The kind, after checking that the other order says the same with the sides swapped.
@@ -53,7 +53,7 @@ TEST(Recognition, FindsAPinInItsHole) {
   const Constraint c = recognize(cylinder(0.075, kHole), cylinder(0.070, kPin));
   EXPECT_EQ(c.kind, ConstraintKind::cylindrical);
   EXPECT_EQ(c.pin, Side::b);
-  EXPECT_EQ(c.guide, Side::a);
+  EXPECT_EQ(c.normal_source, Side::a);
   EXPECT_NEAR(c.clearance, 0.005, 1e-15);
   EXPECT_EQ(c.a.radius, 0.075);
   EXPECT_EQ(c.b.radius, 0.070);
@@ -89,8 +89,8 @@ TEST(Recognition, FindsRimsAndWhatTheyRunAlong) {
 }
 
 TEST(Recognition, LetsTheFaceGiveTheNormalsOfAnEdge) {
-  EXPECT_EQ(recognize(circle(0.075, Role::hole), cylinder(0.070, kPin)).guide, Side::b);
-  EXPECT_EQ(recognize(circle(0.070, Role::pin), cylinder(0.075, kHole)).guide, Side::b);
+  EXPECT_EQ(recognize(circle(0.075, Role::hole), cylinder(0.070, kPin)).normal_source, Side::b);
+  EXPECT_EQ(recognize(circle(0.070, Role::pin), cylinder(0.075, kHole)).normal_source, Side::b);
 }
 
 TEST(Recognition, FindsPlanesAndWhatLiesOnThem) {
@@ -110,7 +110,7 @@ TEST(Recognition, FindsAConeInACone) {
   EXPECT_EQ(kind(socket, cone(0.05, 0.3 + 0.0088, kPin)), ConstraintKind::none);
   EXPECT_EQ(kind(socket, cone(0.05 + 0.0123, 0.3, kPin)), ConstraintKind::conical);
   EXPECT_EQ(kind(socket, cone(0.05 + 0.0124, 0.3, kPin)), ConstraintKind::none);
-  EXPECT_TRUE(recognize(socket, cone(0.05, 0.3, kPin)).pushes_only);
+  EXPECT_TRUE(recognize(socket, cone(0.05, 0.3, kPin)).unilateral);
 }
 
 // The cone's radii: 0.05 -+ 0.02 tan 0.3 = 0.0438 to 0.0562. A ball of r touches where the radius is r cos 0.3.

@@ -18,7 +18,7 @@ struct PointLocation {
   Layer layer;
 };
 
-inline PointLocation locate(const QueryFrame& f, const ClusterFrame& c, float x, float y, float z) {
+inline PointLocation locate(const QueryConstants& f, const PlacedCluster& c, float x, float y, float z) {
   PointLocation p{};
   const float dx = x - c.center[0];
   const float dy = y - c.center[1];
@@ -36,22 +36,22 @@ inline PointLocation locate(const QueryFrame& f, const ClusterFrame& c, float x,
 }
 
 /// Depth of a point in a voxel of layer <= 0 along the normal (nx, ny, nz), A's axes [m]; see query.hpp.
-inline float depth_of(const QueryFrame& f, const PointLocation& p, float nx, float ny, float nz) {
+inline float depth_of(const QueryConstants& f, const PointLocation& p, float nx, float ny, float nz) {
   const float along = p.to_center[0] * nx + p.to_center[1] * ny + p.to_center[2] * nz;
   return (along - static_cast<float>(p.layer)) * f.voxel_size;
 }
 
 /// Coordinate of a point from A's grid origin along one axis [m].
-inline float coordinate(const QueryFrame& f, std::int32_t base, float local) {
+inline float coordinate(const QueryConstants& f, std::int32_t base, float local) {
   return ((static_cast<float>(base) + 0.5F) + local) * f.voxel_size;
 }
 
 inline void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts,
                           QueryCost& cost) {
   contacts.size = 0;
-  const QueryFrame f = make_query_frame(a, b, X_AB);
+  const QueryConstants f = make_query_constants(a, b, X_AB);
   for (const Pointshell::Cluster& cluster : b.clusters) {
-    ClusterFrame c;
+    PlacedCluster c;
     place(cluster, center_of(f, cluster), c);
     for (std::uint32_t i = c.begin; i < c.end; ++i) {
       const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);

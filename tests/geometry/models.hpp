@@ -1,4 +1,4 @@
-// What the geometry tests share: files, small meshes and the checks that hold for every part.
+// Helpers of the geometry tests: files, small meshes and checks that hold for every part.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -43,7 +43,7 @@ HOME_OF_LIBRARY = {
     r"\w+\.hxx|assimp/.*": ["engine/geometry/cad/"],
     r"CGAL/.*": ["engine/geometry/self_intersection.cpp", "engine/geometry/recover/flat_regions.cpp"],
     r"fcl/.*": ["engine/contact/mesh_query.cpp", "engine/contact/broad_phase.cpp"],
-    r"hwy/(highway|foreach_target)\.h": ["engine/contact/", "engine/constraint/restore_run.cpp"],
+    r"hwy/(highway|foreach_target)\.h": ["engine/contact/", "engine/constraint/restore_batch.cpp"],
     r"CLI/CLI\.hpp": ["engine/cli/"],
     r"nlohmann/json\.hpp": ["engine/script/", "engine/cli/"],
     r"sleef\.h|xxhash\.h|openssl/sha\.h": ["engine/base/"],

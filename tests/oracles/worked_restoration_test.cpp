@@ -25,7 +25,7 @@ Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3
 
 /// `n`: unit normal, from the body that feels f towards the other.
 Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha) {
-  return restore_along(n, f, alpha, /*pushes_only=*/true);
+  return restore_along(n, f, alpha, /*unilateral=*/true);
 }
 
 // Eq. 8.8. Every inexact intermediate is below 4: one rounding is at most 2^-52, fewer than ten add.
@@ -52,9 +52,9 @@ TEST(RestoreCylindrical, GivesTheWorkedNumberForARecognizedPin) {
   c.kind = ConstraintKind::cylindrical;
   c.pairing = Pairing::axis_axis;
   c.field = NormalField::about_line;
-  c.guide = Side::a;
+  c.normal_source = Side::a;
   c.pin = Side::b;
-  c.pushes_only = false;
+  c.unilateral = false;
   c.clearance = 0.005;
   c.a = {Vector3d::Zero(), kZ, 0.075, 0.1, 0};
   c.b = {Vector3d::Zero(), kZ, 0.070, 0.2, 0};

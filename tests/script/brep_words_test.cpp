@@ -138,7 +138,7 @@ TEST(BrepWords, RefuseShapesThatAreNone) {
       {"Cylinder()\nshape.radius = 0", kAbove},
       {"Cylinder()\nshape.radius = -0.02",
        "'cube': a declared cylinder has a radius of -0.02 m but it must be above 0"},
-      {"Cylinder()\nshape.radius = 0.02", ""},
+      {"Cylinder()\nshape.normal, shape.radius = {1, 0, 0}, 0.02", ""},
       {"Sphere()\nshape.radius = 0", kAbove},
       {"Sphere()\nshape.radius = -0.02", "'cube': a declared sphere has a radius of -0.02 m but it must be above 0"},
       {"Sphere()\nshape.radius = 0.03", ""},

@@ -20,7 +20,8 @@ class Lamp final : public Companion {
   }
   [[nodiscard]] double duration() const override { return 0.25; }
   void declare(Columns& columns) const override {
-    columns.add("/state/lamp/blinks", "1", "blinks since the start", [this] { return blinks_; }, {}, "/cost/lamp/due");
+    columns.add(
+        "/state/lamp/blinks", "1", "blinks since the start", [this] { return blinks_; }, {}, "/cost/lamp/due");
     columns.add("/cost/lamp/due", "1", "blinks in this frame", [this] { return due_; });
   }
 

@@ -1,5 +1,5 @@
-// The recipe of engine/simulation/README.md, "To add a hybrid method", followed to the letter: this file and its line in
-// CMakeLists.txt are all that a method takes; a second line, in methods.cpp, would make it a word of scenarios.
+// The recipe of engine/simulation/README.md, "To add a hybrid method", followed to the letter: this file and its line
+// in CMakeLists.txt are all that a method takes; a second line, in methods.cpp, would make it a word of scenarios.
 #include <gtest/gtest.h>
 
 #include "tests/simulation/hybrid_scenes.hpp"

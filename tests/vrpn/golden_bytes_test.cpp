@@ -1,4 +1,4 @@
-// What the published VRPN library sent (reference/vrpn_wire, golden.json), read here and written again.
+// Messages that the published VRPN library sent (reference/vrpn_wire, golden.json), decoded here and encoded again.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -52,9 +52,9 @@ class GoldenBytes : public testing::Test {
       if (!event.contains("header")) continue;
       SCOPED_TRACE(event.dump());
       const Bytes bytes = from_hex(event.at("bytes"));
-      const Framed framed = first_message(bytes);
-      ASSERT_EQ(framed.state, Framed::State::whole);
-      check(event, bytes, framed);
+      const ParsedMessage parsed = first_message(bytes);
+      ASSERT_EQ(parsed.state, ParsedMessage::State::whole);
+      check(event, bytes, parsed);
       ++count;
     }
     EXPECT_GT(count, 150);
@@ -65,16 +65,16 @@ class GoldenBytes : public testing::Test {
 };
 
 TEST_F(GoldenBytes, HeadersReadAndWriteAsRecorded) {
-  for_each_message([](const json& event, const Bytes& bytes, const Framed& framed) {
+  for_each_message([](const json& event, const Bytes& bytes, const ParsedMessage& parsed) {
     const json& header = event.at("header");
-    const Message& m = framed.message;
+    const Message& m = parsed.message;
     EXPECT_EQ(kHeaderBytes + m.payload.size(), header.at("length"));
     EXPECT_EQ(m.time.seconds, header.at("sec"));
     EXPECT_EQ(m.time.microseconds, header.at("usec"));
     EXPECT_EQ(m.sender, header.at("sender"));
     EXPECT_EQ(m.type, header.at("type"));
     EXPECT_EQ(m.sequence, header.at("sequence"));
-    EXPECT_EQ(framed.bytes, bytes.size());
+    EXPECT_EQ(parsed.bytes, bytes.size());
     Bytes again;
     put_message(again, m);
     ASSERT_EQ(again.size(), bytes.size());
@@ -85,8 +85,8 @@ TEST_F(GoldenBytes, HeadersReadAndWriteAsRecorded) {
 
 TEST_F(GoldenBytes, PayloadsReadAndWriteAsRecorded) {
   std::map<std::string, int> seen;
-  for_each_message([&](const json& event, const Bytes&, const Framed& framed) {
-    const View payload = framed.message.payload;
+  for_each_message([&](const json& event, const Bytes&, const ParsedMessage& parsed) {
+    const View payload = parsed.message.payload;
     const Bytes recorded(payload.begin(), payload.end());
     const std::string kind = event.at("kind");
     const std::string type = event.value("type_name", "");

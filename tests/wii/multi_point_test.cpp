@@ -17,7 +17,7 @@ RemoteSettings ideal(const LedLayout& leds) {
   return settings;
 }
 
-// Without noise only the belief that heads are upright pulls, by (0.2 deg / 18 deg)^2 of the yaw at most.
+// Without noise only the prior that heads are upright pulls, by (0.2 deg / 18 deg)^2 of the yaw at most.
 TEST(ThreeLed, FindsAnyTurnedHeadAtOnce) {
   TrackerSettings settings;
   settings.leds = LedLayout::triangle();

@@ -1,6 +1,6 @@
-// `blend`: Faas's comparator. The collision's response is mixed by alignment with the pull of a spring towards where the
-// constraints would have the body. The spring is the virtual coupling's, as weak as that of the weaker of the bodies
-// that move.
+// `blend`: Faas's comparator. The collision's response is mixed by alignment with the pull of a spring towards where
+// the constraints would have the body. The spring is the virtual coupling's, as weak as that of the weaker of the
+// bodies that move.
 #include <algorithm>
 
 #include "engine/constraint/blend.hpp"

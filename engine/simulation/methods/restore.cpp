@@ -1,5 +1,5 @@
-// `restore`: degree-of-freedom restoration (dissertation section 8.4.2). Each contact's force, before the sum, loses what
-// opposes a motion that a recognized constraint leaves free.
+// `restore`: degree-of-freedom restoration (dissertation section 8.4.2). Each contact's force, before the sum, loses
+// what opposes a motion that a recognized constraint leaves free.
 //
 // An implicit step needs the matrices of restored contacts, so it restores their normals before anything is computed
 // from them. An explicit one needs forces alone, and its stiffness stays that of the voxels' contacts.

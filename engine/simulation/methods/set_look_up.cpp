@@ -26,8 +26,7 @@ ConstraintOptions options_of(const Pair& pair) {
   ConstraintOptions options;
   options.measure = pair.parameters.alignment;
   options.reduction = pair.parameters.reduction;
-  options.scales.voxel_size =
-      std::max(pair.map().voxels->voxmap.voxel_size, pair.points().voxels->voxmap.voxel_size);
+  options.scales.voxel_size = std::max(pair.map().voxels->voxmap.voxel_size, pair.points().voxels->voxmap.voxel_size);
   return options;
 }
 

@@ -1,5 +1,5 @@
-// The feature sets of a pair's voxel contacts, looked up and acted on: between contacts that know voxels and constraints
-// that do not.
+// The feature sets of a pair's voxel contacts, looked up and acted on: between contacts that know voxels and
+// constraints that do not.
 //
 // Source: dissertation sections 6.4.2 and 8.2.2. Fetches the two sets of every contact and hands columns over to a
 // ConstraintLink. Coordinates as in the contact list: A is the body with the voxmap, B the one with the points. Nothing

@@ -25,7 +25,9 @@ class Contacts {
   [[nodiscard]] bool near(std::size_t link) const { return near_[link]; }  ///< broad phase
   [[nodiscard]] std::uint32_t count(std::size_t link) const { return links_[link] ? links_[link]->contacts().size : 0; }
   [[nodiscard]] bool touches(std::size_t link) const { return count(link) > 0; }
-  [[nodiscard]] double depth_max(std::size_t link) const { return links_[link] ? links_[link]->depth_max() : 0; }  ///< m
+  [[nodiscard]] double depth_max(std::size_t link) const {
+    return links_[link] ? links_[link]->depth_max() : 0;
+  }  ///< m
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return of_body_[body]; }
   /// m, the body's centre of mass when contacts were found: what their wrenches are about.
   [[nodiscard]] const Vector3d& found_at(std::size_t body) const { return p_WC_[body]; }

@@ -81,7 +81,7 @@ void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& se
     exact::BodyMotion motion{.X_WB = rigid.pose(), .p_WC = rigid.p_WC, .twist = {}};
     if (!of.solved) return motion;
     motion.twist = {of.velocity.head<3>(), of.velocity.tail<3>()};
-    motion.before = {rigid.v_C, rigid.omega};
+    motion.last_twist = {rigid.v_C, rigid.omega};
     return motion;
   };
   search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing);

@@ -12,8 +12,8 @@ void Motion::advance(World& world, const Response& response, const ExactResponse
     const Loads& loads = response.loads(i);
     work_[i] = exact.solved(i)
                    ? end_implicit(body.rigid, loads, exact.step(i), exact.velocity(i), exact.wrench(i), world.dt)
-               : world.is_implicit() ? step_implicit(body.rigid, loads, world.dt, passivity.fraction(i))
-                                     : step_semi_implicit(body.rigid, loads, world.dt, passivity.fraction(i));
+               : world.is_implicit() ? step_implicit(body.rigid, loads, world.dt, passivity.scale(i))
+                                     : step_semi_implicit(body.rigid, loads, world.dt, passivity.scale(i));
     if (!body.rigid.is_finite())
       fail(ErrorKind::diverged,
            "frame {}: the state of '{}' is not finite any more; lower the stiffness or the time step", world.frame,

@@ -11,7 +11,7 @@ Passivity::Passivity(const World& world)
       watched_(world.bodies.size(), false),
       group_(world.bodies.size()),
       work_(world.bodies.size()),
-      fraction_(world.bodies.size(), 1) {}
+      scale_(world.bodies.size(), 1) {}
 
 bool Passivity::watch_links(const World& world, const Contacts& contacts, const PairMethods& methods) {
   std::fill(watched_.begin(), watched_.end(), false);
@@ -28,7 +28,7 @@ bool Passivity::watch_links(const World& world, const Contacts& contacts, const 
 
 void Passivity::bound(const World& world, const Contacts& contacts, const PairMethods& methods,
                       const Response& response, const ExactResponse& exact, const Ledger& ledger) {
-  std::fill(fraction_.begin(), fraction_.end(), 1);
+  std::fill(scale_.begin(), scale_.end(), 1);
   if (!watch_links(world, contacts, methods) || !world.parameters.passive_contacts) return;
   const auto in_a_group = [&](std::size_t i) { return world.moves(world.bodies[i]) && !exact.solved(i); };
   join_bodies(world.links, group_, [&](std::size_t l) {
@@ -49,10 +49,10 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   }
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (group_[i] == i && watched_[i]) {
-      fraction_[i] = share_within(std::max(0.0, budget), work_[i]);
-      budget -= work_[i].of(fraction_[i]);
+      scale_[i] = passive_scale(std::max(0.0, budget), work_[i]);
+      budget -= work_[i].at(scale_[i]);
     }
-    fraction_[i] = fraction_[group_[i]];
+    scale_[i] = scale_[group_[i]];
   }
 }
 

@@ -1,9 +1,9 @@
-// The passivity controller of the contacts (dynamics/integrator.hpp): contacts that a method changed, or that appeared when
-// one was switched off, give no more energy than all contacts were given.
+// The passivity controller of the contacts (dynamics/integrator.hpp): contacts that a method changed, or that appeared
+// when one was switched off, give no more energy than all contacts were given.
 //
-// Bodies that move and touch each other are one group. The same fraction acts for all of a group: what is taken from one
-// side of a contact is taken from the other, and momentum stays. A body that the exact response moves is alone: it has
-// all of its contacts.
+// Bodies that move and touch each other are one group. One scale acts for all of a group: what is taken from
+// one side of a contact is taken from the other, and momentum stays. A body that the exact response moves is alone: it
+// has all of its contacts.
 #pragma once
 
 #include <vector>
@@ -17,11 +17,11 @@ class Passivity {
  public:
   explicit Passivity(const World& world);
 
-  /// Finds how much of each body's contact acts in this frame.
+  /// Finds the scale of each body's contact forces in this frame.
   void bound(const World& world, const Contacts& contacts, const PairMethods& methods, const Response& response,
              const ExactResponse& exact, const Ledger& ledger);
   /// 0 to 1.
-  [[nodiscard]] double fraction(std::size_t body) const { return fraction_[body]; }
+  [[nodiscard]] double scale(std::size_t body) const { return scale_[body]; }
 
  private:
   [[nodiscard]] bool watch_links(const World& world, const Contacts& contacts, const PairMethods& methods);
@@ -31,7 +31,7 @@ class Passivity {
   std::vector<bool> watched_;       ///< bodies, groups by their first body
   std::vector<std::size_t> group_;  ///< of each body: the first body of its group
   std::vector<ContactWork> work_;   ///< of groups, by their first body
-  std::vector<double> fraction_;
+  std::vector<double> scale_;
 };
 
 }  // namespace verisim

@@ -16,7 +16,7 @@ struct SideOfLink {
 /// is of what they did to the other; where both stand still, what they would have done.
 Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& theirs) {
   const auto on = [&](const LinkSide& side, const ContactEnd& end) {
-    return acted(side.wrench, side.stiffness, side.damping, side.drift, end, world.dt);
+    return wrench_at_end(side.wrench, side.stiffness, side.damping, side.drift, end, world.dt);
   };
   if (world.moves(mine.body)) return on(mine.start, mine.end);
   if (!world.moves(theirs.body)) return mine.start.wrench;
@@ -26,8 +26,8 @@ Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& the
 
 }  // namespace
 
-void Reactions::find(const World& world, const Contacts& contacts, const Response& response,
-                     const ExactResponse& exact, const Motion& motion) {
+void Reactions::find(const World& world, const Contacts& contacts, const Response& response, const ExactResponse& exact,
+                     const Motion& motion) {
   for (std::size_t i = 0; i < on_body_.size(); ++i)
     on_body_[i] = world.moves(world.bodies[i]) ? motion.work(i).contact : Wrench{};
   for (std::size_t l = 0; l < world.links.size(); ++l) {

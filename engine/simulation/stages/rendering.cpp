@@ -10,10 +10,10 @@ Vector3d within(double norm_max, const Vector3d& v) {
   return norm > norm_max ? Vector3d(norm_max / norm * v) : v;
 }
 
-/// The reaction to the coupling, about the virtual handle. The damper of a heavy body is more than a hand at the end of a
-/// sampled loop can bear: b dt/m_hand, with the arm's part, has to stay below 1 (half of the bound in ORACLES section 2).
-/// The lightest hand with its handle is taken as 0.1 kg and 0.001 kg m^2; beyond that the damper, which is there for the
-/// body's sake, is rendered weaker. The spring is rendered in full; nothing beyond the coupling's limits.
+/// The reaction to the coupling, about the virtual handle. The damper of a heavy body is more than a hand at the end of
+/// a sampled loop can bear: b dt/m_hand, with the arm's part, has to stay below 1 (half of the bound in ORACLES section
+/// 2). The lightest hand with its handle is taken as 0.1 kg and 0.001 kg m^2; beyond that the damper, which is there
+/// for the body's sake, is rendered weaker. The spring is rendered in full; nothing beyond the coupling's limits.
 Wrench felt(const Vector3d& handle, const Coupling& coupling, const CouplingTarget& target, const StepWork& work,
             double dt) {
   constexpr double kMass = 0.1;
@@ -23,8 +23,8 @@ Wrench felt(const Vector3d& handle, const Coupling& coupling, const CouplingTarg
   const double angular = dt * coupling.angular_damping_B.trace() / kInertia;
   const Vector3d force =
       within(coupling.force_max, work.coupling.force - (1 - std::min(1.0, 1 / linear)) * work.coupling_damper.force);
-  const Vector3d torque = within(coupling.torque_max, work.coupling.torque - (1 - std::min(1.0, 1 / angular)) *
-                                                                                 work.coupling_damper.torque);
+  const Vector3d torque = within(coupling.torque_max,
+                                 work.coupling.torque - (1 - std::min(1.0, 1 / angular)) * work.coupling_damper.torque);
   return {-force, -torque - arm.cross(force)};
 }
 

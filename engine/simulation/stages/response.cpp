@@ -52,7 +52,7 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
     ++bodies_[world.links[l].second].links_touching;
   }
   for (OfBody& of : bodies_) {
-    const double left = kStabilityBudget - (of.loads.coupling != nullptr ? of.loads.coupling->share : 0);
+    const double left = kStabilityBudget - (of.loads.coupling != nullptr ? of.loads.coupling->budget_used : 0);
     if (of.links_touching > 0) of.link_body.budget = left / of.links_touching;
   }
 }

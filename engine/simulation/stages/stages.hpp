@@ -1,5 +1,5 @@
-// The stages of a frame. Each owns what it keeps per body and per link, and is the only one to write it; the others read
-// it through its functions. Simulation::step calls them in their order.
+// The stages of a frame. Each owns what it keeps per body and per link, and is the only one to write it; the others
+// read it through its functions. Simulation::step calls them in their order.
 #pragma once
 
 #include "engine/simulation/stages/contacts.hpp"

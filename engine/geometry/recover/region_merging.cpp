@@ -1,4 +1,4 @@
-#include "engine/geometry/recover/second_thoughts.hpp"
+#include "engine/geometry/recover/region_merging.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -8,15 +8,15 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr std::size_t kPatch = 200;    // triangles at most
-constexpr double kMostlySmooth = 0.7;  // of a border
-constexpr std::size_t kCrowd = 12;     // patches side by side with nothing else around them …
-constexpr std::size_t kFewEach = 30;   // … and fewer triangles than this, each
+constexpr std::size_t kPatchTrianglesMax = 200;  // a larger region is a surface
+constexpr double kMostlySmooth = 0.7;            // of a border's length
+constexpr std::size_t kClusterMin = 12;          // patches of a cluster
+constexpr std::size_t kTrianglesEachMax = 30;    // mean triangles of its patches
 
-class Giving {
+class RegionMerger {
  public:
-  explicit Giving(Regions& regions) : regions_(regions), asked_by_(regions.all.size(), kNone) {
-    for (const TakenRegion& region : regions.all) areas_.push_back(regions.area_of(region.triangles));
+  explicit RegionMerger(Regions& regions) : regions_(regions), last_tested_by_(regions.all.size(), kNone) {
+    for (const FoundRegion& region : regions.all) areas_.push_back(regions.area_of(region.triangles));
   }
 
   void run() {
@@ -24,23 +24,23 @@ class Giving {
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, std::greater<>{}, [&](std::uint32_t r) { return areas_[r]; });
     for (const std::uint32_t r : order) {
-      if (regions_.all[r].fit && !regions_.all[r].triangles.empty()) give_to(r);
+      if (regions_.all[r].fit && !regions_.all[r].triangles.empty()) absorb_neighbors(r);
     }
   }
 
  private:
-  void give_to(std::uint32_t larger) {
-    const std::vector<std::uint32_t>& triangles = regions_.all[larger].triangles;  // it grows
-    const Piece piece = regions_.piece_of(*regions_.all[larger].fit, triangles.front());
+  void absorb_neighbors(std::uint32_t larger) {
+    const std::vector<std::uint32_t>& triangles = regions_.all[larger].triangles;  // grows within the loop
+    const InlierTest inliers = regions_.inlier_test(*regions_.all[larger].fit, triangles.front());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (const std::uint32_t t : regions_.mesh.neighbors[triangles[i]]) {
         if (t == kNone || regions_.region_of(t) == larger) continue;
         const std::uint32_t other = regions_.region_of(t);
         if (other == kNone) {
-          if (is_small(t) && piece.is_possible(t)) regions_.add(larger, t);
-        } else if (asked_by_[other] != larger && areas_[other] <= areas_[larger]) {
-          asked_by_[other] = larger;
-          if (fits(piece, regions_.all[other])) regions_.merge(other, larger);
+          if (is_small(t) && inliers.is_loose_inlier(t)) regions_.assign(larger, t);
+        } else if (last_tested_by_[other] != larger && areas_[other] <= areas_[larger]) {
+          last_tested_by_[other] = larger;
+          if (fits(inliers, regions_.all[other])) regions_.merge(other, larger);
         }
       }
     }
@@ -49,21 +49,21 @@ class Giving {
 
   [[nodiscard]] bool is_small(std::uint32_t t) const { return regions_.is_small(regions_.facets.of_triangle[t]); }
 
-  [[nodiscard]] bool fits(const Piece& piece, const TakenRegion& region) const {
-    return std::ranges::all_of(region.triangles,
-                               [&](std::uint32_t t) { return (region.fit || is_small(t)) && piece.is_possible(t); });
+  [[nodiscard]] bool fits(const InlierTest& inliers, const FoundRegion& region) const {
+    return std::ranges::all_of(
+        region.triangles, [&](std::uint32_t t) { return (region.fit || is_small(t)) && inliers.is_loose_inlier(t); });
   }
 
   Regions& regions_;
   std::vector<double> areas_;
-  std::vector<std::uint32_t> asked_by_;  // regions: by which larger one last
+  std::vector<std::uint32_t> last_tested_by_;  // per region: the larger one that tested it last
 };
 
-class Patches {
+class FreeformPatches {
  public:
-  explicit Patches(Regions& regions) : regions_(regions) {
-    for (const TakenRegion& region : regions.all)
-      is_patch_.push_back(region.fit && !region.triangles.empty() && region.triangles.size() <= kPatch);
+  explicit FreeformPatches(Regions& regions) : regions_(regions) {
+    for (const FoundRegion& region : regions.all)
+      is_patch_.push_back(region.fit && !region.triangles.empty() && region.triangles.size() <= kPatchTrianglesMax);
   }
 
   void run() {
@@ -76,7 +76,7 @@ class Patches {
         changed = true;
       }
     }
-    changed = true;  // from what is free inwards: patches that no free form reaches are surfaces
+    changed = true;  // from free triangles inwards: patches that no free form reaches are surfaces
     while (changed) {
       changed = false;
       for (std::uint32_t r = 0; r < is_patch_.size(); ++r) {
@@ -86,14 +86,15 @@ class Patches {
         changed = true;
       }
     }
-    for (std::uint32_t r = 0; r < is_patch_.size(); ++r) {  // a free form that is nothing but patches
-      if (is_patch_[r]) release_crowd(r);
+    for (std::uint32_t r = 0; r < is_patch_.size(); ++r) {  // a free form that consists of patches alone
+      if (is_patch_[r]) release_cluster(r);
     }
   }
 
  private:
-  /// All patches that are joined smoothly to this one, if they are many and small; they are none any more in any case.
-  void release_crowd(std::uint32_t first) {
+  /// Releases the cluster of patches that are joined smoothly to this one, if they are many and small. Clears their
+  /// marks in any case.
+  void release_cluster(std::uint32_t first) {
     std::vector<std::uint32_t> joined = {first};
     std::size_t triangles = 0;
     is_patch_[first] = false;
@@ -105,11 +106,11 @@ class Patches {
         is_patch_[joined.back()] = false;
       });
     }
-    if (joined.size() < kCrowd || triangles >= kFewEach * joined.size()) return;
+    if (joined.size() < kClusterMin || triangles >= kTrianglesEachMax * joined.size()) return;
     for (const std::uint32_t r : joined) regions_.release(r);
   }
 
-  /// Calls `visit(triangle beside or kNone, length of the side, is it smooth)` around a region.
+  /// Calls visit(triangle beside or kNone, length of the side [m], is it smooth) for every side of a region's border.
   template <typename Visit>
   void for_each_side(std::uint32_t region, Visit visit) const {
     for (const std::uint32_t t : regions_.all[region].triangles) {
@@ -125,7 +126,7 @@ class Patches {
   [[nodiscard]] bool is_among_patches(std::uint32_t region) const {
     double smooth = 0, whole = 0;
     for_each_side(region, [&](std::uint32_t beside, double length, bool is_smooth) {
-      if (beside != kNone) whole += length;  // an open end says nothing
+      if (beside != kNone) whole += length;  // open borders do not count
       if (is_smooth && (regions_.is_free(beside) || is_patch_[regions_.region_of(beside)])) smooth += length;
     });
     return smooth > kMostlySmooth * whole;
@@ -140,17 +141,17 @@ class Patches {
   }
 
   Regions& regions_;
-  std::vector<bool> is_patch_;  // regions that may be
+  std::vector<bool> is_patch_;  // per region
 };
 
 }  // namespace
 
-void give_to_larger(Regions& regions) {
-  Giving(regions).run();
+void merge_regions(Regions& regions) {
+  RegionMerger(regions).run();
 }
 
-void release_patches(Regions& regions) {
-  Patches(regions).run();
+void release_freeform_patches(Regions& regions) {
+  FreeformPatches(regions).run();
 }
 
 }  // namespace verisim::recover

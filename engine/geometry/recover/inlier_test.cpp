@@ -1,4 +1,4 @@
-#include "engine/geometry/recover/piece.hpp"
+#include "engine/geometry/recover/inlier_test.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +10,18 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kNearlyTangent = 0.9;    // cosine
-constexpr double kCovers = 0.5;           // of a triangle's area, in the surface's coordinates
-constexpr double kQuarterOfATube = -0.2;  // cosine: a fan at most spans a fillet
-constexpr double kNoise = 4;              // tolerances: nearer to an axis no direction, lower than that no area
-constexpr double kRim = 30;               // tolerances: of drawings, against that of numbers
+constexpr double kNearlyTangent = 0.9;     // cosine
+constexpr double kParameterAreaMin = 0.5;  // of a triangle's own area, for its image in the surface's parameters
+constexpr double kFilletSpan = -0.2;       // cosine of 102 degrees: a fan spans at most a quarter of a tube, a fillet
+constexpr double kNoise = 4;               // tolerances: nearer to an axis, or lower, is noise
+constexpr double kSharpEdgeSlack = 30;     // tolerances: drawings are less exact than numbers
 
 }  // namespace
 
-/// The corners in the surface's own coordinates.
-struct Piece::Corners {
+/// The corners in the surface's own parameters.
+struct InlierTest::Corners {
   std::array<Vector3d, 3> gradient, outward;
-  std::array<Eigen::Vector2d, 3> tube;  ///< unit, in the half plane of the corner: from the tube's middle
+  std::array<Eigen::Vector2d, 3> tube;  ///< unit, in the corner's meridian half plane: from the tube's centre
   std::array<double, 3> rho, height;
 
   Corners(const CanonicalMesh& mesh, std::uint32_t t, const SurfaceValue& s, double tolerance) {
@@ -36,7 +36,7 @@ struct Piece::Corners {
       tube[i] = Eigen::Vector2d(f.rho - s.a, f.height).normalized();
       on_axis[i] = f.rho <= kNoise * tolerance;
     }
-    for (std::size_t i = 0; i < 3; ++i) {  // an apex is in every direction: in that of the others
+    for (std::size_t i = 0; i < 3; ++i) {  // on the axis every direction is outward: take that of the others
       if (!on_axis[i]) continue;
       const Vector3d sum = outward[(i + 1) % 3] + outward[(i + 2) % 3];
       if (sum.norm() > 0) outward[i] = sum.normalized();
@@ -45,17 +45,16 @@ struct Piece::Corners {
   }
 };
 
-bool Piece::is_on(std::uint32_t t) const {
+bool InlierTest::is_on_surface(std::uint32_t t) const {
   for (std::size_t i = 0; i < 3; ++i) {
-    const bool is_rim = limits_.is_rim != nullptr && (*limits_.is_rim)[mesh_.triangles[t][i]];
-    const double within = (is_rim ? kRim : 1) * limits_.tolerance;
+    const bool on_sharp_edge = limits_.on_sharp_edge != nullptr && (*limits_.on_sharp_edge)[mesh_.triangles[t][i]];
+    const double within = (on_sharp_edge ? kSharpEdgeSlack : 1) * limits_.tolerance;
     if (std::abs(surface_.distance(mesh_.corner(t, i))) > within) return false;
   }
   return true;
 }
 
-/// Area of the triangle in the surface's coordinates; negative if it is turned over.
-Piece::Cover Piece::cover_of(const Corners& c) const {
+InlierTest::ParameterImage InlierTest::parameter_image(const Corners& c) const {
   const double rho = (c.rho[0] + c.rho[1] + c.rho[2]) / 3;
   std::array<Eigen::Vector2d, 2> sides;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -69,11 +68,11 @@ Piece::Cover Piece::cover_of(const Corners& c) const {
   }
   const double area = 0.5 * (sides[0].x() * sides[1].y() - sides[0].y() * sides[1].x());
   const double length = std::max({sides[0].norm(), sides[1].norm(), (sides[1] - sides[0]).norm()});
-  return {limits_.inside_out ? -area : area, length};
+  return {limits_.is_hole ? -area : area, length};
 }
 
-bool Piece::is_regular(std::uint32_t t) const {
-  if (!is_on(t)) return false;
+bool InlierTest::is_inlier(std::uint32_t t) const {
+  if (!is_on_surface(t)) return false;
   const Corners c(mesh_, t, surface_, limits_.tolerance);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
@@ -85,27 +84,27 @@ bool Piece::is_regular(std::uint32_t t) const {
   }
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-  if ((limits_.inside_out ? -along : along) <= kNearlyTangent) return false;
-  return surface_.kind == Kind::sphere || cover_of(c).area > kCovers * mesh_.areas[t];
+  if ((limits_.is_hole ? -along : along) <= kNearlyTangent) return false;
+  return surface_.kind == Kind::sphere || parameter_image(c).area > kParameterAreaMin * mesh_.areas[t];
 }
 
-bool Piece::is_possible(std::uint32_t t) const {
-  if (!is_on(t)) return false;
+bool InlierTest::is_loose_inlier(std::uint32_t t) const {
+  if (!is_on_surface(t)) return false;
   const Corners c(mesh_, t, surface_, limits_.tolerance);
   const bool is_sphere = surface_.kind == Kind::sphere;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
     if ((is_sphere ? c.gradient : c.outward)[i].dot((is_sphere ? c.gradient : c.outward)[k]) < limits_.cos_step)
       return false;
-    if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < kQuarterOfATube) return false;
+    if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < kFilletSpan) return false;
   }
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   if (is_sphere) {
     const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-    return (limits_.inside_out ? -along : along) > kCovers;
+    return (limits_.is_hole ? -along : along) > kParameterAreaMin;
   }
-  const Cover cover = cover_of(c);
-  return cover.area > kNoise * limits_.tolerance * cover.length;
+  const ParameterImage image = parameter_image(c);
+  return image.area > kNoise * limits_.tolerance * image.length;
 }
 
 }  // namespace verisim::recover

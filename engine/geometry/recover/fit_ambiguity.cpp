@@ -1,4 +1,4 @@
-#include "engine/geometry/recover/evidence.hpp"
+#include "engine/geometry/recover/fit_ambiguity.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,15 +11,16 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr std::size_t kEnough = 5;
-/// Of each kind: through fewer it passes by chance, having 3, 5, 6, 4 and 7 parameters and a whole mesh to choose from.
-constexpr std::array<std::size_t, 5> kFewest = {3, 8, 8, 9, 14};
+constexpr std::size_t kPlacesMin = 5;
+/// By kind. Through fewer points a surface passes by chance: kinds have 3, 5, 6, 4 and 7 parameters, and a whole mesh
+/// of points to choose from.
+constexpr std::array<std::size_t, 5> kPointsMin = {3, 8, 8, 9, 14};
 constexpr double kEqualStep = 0.02;  // relative
-constexpr double kBulge = 50;        // tolerances off the nearest plane: what is flatter fits anything
+constexpr double kSagittaMin = 50;   // tolerances off the best plane: flatter points fit any kind
 using pinned::kFullTurn;
 
-/// Places on a circle that are no nearer to each other than `apart`, ascending, the widest gap before the first.
-std::vector<double> places(std::vector<double> angles, double apart) {
+/// Angles on a circle that are at least `apart` from each other [rad], ascending, the widest gap before the first.
+std::vector<double> distinct_angles(std::vector<double> angles, double apart) {
   std::ranges::sort(angles);
   std::vector<double> different;
   for (const double angle : angles) {
@@ -41,10 +42,11 @@ std::vector<double> places(std::vector<double> angles, double apart) {
   return different;
 }
 
-bool make_a_circle(const std::vector<double>& angles, double apart) {
-  const std::vector<double> at = places(angles, apart);
-  if (at.size() >= kEnough) return true;
-  if (at.size() + 1 < kEnough) return false;
+/// True for five different places around a circle, or four at equal steps.
+bool determine_circle(const std::vector<double>& angles, double apart) {
+  const std::vector<double> at = distinct_angles(angles, apart);
+  if (at.size() >= kPlacesMin) return true;
+  if (at.size() + 1 < kPlacesMin) return false;
   const double mean = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
   for (std::size_t i = 1; i < at.size(); ++i) {
     if (std::abs(at[i] - at[i - 1] - mean) > kEqualStep * mean) return false;
@@ -54,18 +56,18 @@ bool make_a_circle(const std::vector<double>& angles, double apart) {
 
 }  // namespace
 
-std::size_t fewest_points(Kind kind) {
-  return kFewest[static_cast<std::size_t>(kind)];
+std::size_t points_min(Kind kind) {
+  return kPointsMin[static_cast<std::size_t>(kind)];
 }
 
-bool is_evident(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance) {
+bool is_unambiguous(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance) {
   if (s.kind == Kind::plane) return true;
-  if (s.kind == Kind::torus && std::abs(s.a) < kBulge * tolerance) return false;  // a sphere, about any axis
-  if (points.size() < fewest_points(s.kind)) return false;
+  if (s.kind == Kind::torus && std::abs(s.a) < kSagittaMin * tolerance) return false;  // a sphere, about any axis
+  if (points.size() < points_min(s.kind)) return false;
   const SurfaceValue flat = plane_through(points);
-  const bool bulges =
-      std::ranges::any_of(points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > kBulge * tolerance; });
-  if (!bulges) return false;
+  const bool is_curved = std::ranges::any_of(
+      points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > kSagittaMin * tolerance; });
+  if (!is_curved) return false;
   const Vector3d x = s.axis.unitOrthogonal(), y = s.axis.cross(x);
   std::vector<double> around, along;
   double largest = 0;
@@ -78,9 +80,9 @@ bool is_evident(const SurfaceValue& s, std::span<const Vector3d> points, double 
   }
   const double across_radius = s.kind == Kind::torus ? s.b : s.a;
   const auto apart = [&](double radius) { return 4 * tolerance / std::max(radius, tolerance); };
-  if (!make_a_circle(around, apart(largest))) return false;
+  if (!determine_circle(around, apart(largest))) return false;
   if (s.kind == Kind::cylinder || s.kind == Kind::cone) return true;
-  return make_a_circle(along, apart(across_radius));
+  return determine_circle(along, apart(across_radius));
 }
 
 }  // namespace verisim::recover
