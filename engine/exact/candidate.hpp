@@ -46,7 +46,7 @@ struct BodyPair {
   const RelativeMotion& motion;
 
   /// The feature's curve in a surface's own axes, with the displacement that `twist` gives it in one step.
-  [[nodiscard]] CurveFromSurface seen_from(const PreciseSurface& surface, const PlacedFeature& placed,
+  [[nodiscard]] CurveFromSurface seen_from(const AnalyticSurface& surface, const PlacedFeature& placed,
                                            const Twist& twist) const {
     return exact::seen_from(surface, placed.origin, placed.x, placed.y, placed.is_arc(), motion.dt * twist.linear,
                             motion.dt * twist.angular);

@@ -40,7 +40,7 @@ bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot)
   return true;
 }
 
-Place closest_place_to(const BodyPair& pair, const PreciseSurface& surface, const PlacedFeature& placed,
+Place closest_place_to(const BodyPair& pair, const AnalyticSurface& surface, const PlacedFeature& placed,
                        std::uint32_t sample) {
   return closest_place(pair.seen_from(surface, placed, pair.motion.free_twist), pair.mover.sample_c[sample],
                        pair.mover.sample_s[sample], placed.feature->half_width);
@@ -49,7 +49,7 @@ Place closest_place_to(const BodyPair& pair, const PreciseSurface& surface, cons
 /// True if the candidate's place, on the edge of `face` and `other`, lies within `face` and inside of every third face
 /// that shares a convex edge with `face`.
 bool is_outermost(const BodyPair& pair, const Candidate& c, std::uint32_t face, std::uint32_t other) {
-  const PreciseSurface& surface = *pair.base.faces[face].surface;
+  const AnalyticSurface& surface = *pair.base.faces[face].surface;
   const Trim::Answer answer = pair.base.faces[face].trim->find(surface, c.p - c.at.distance * surface.at(c.p).normal);
   for (const std::uint32_t e : answer.edges) {
     const ExactEdge& edge = pair.base.edges[e];
@@ -65,8 +65,8 @@ bool is_outermost(const BodyPair& pair, const Candidate& c, std::uint32_t face, 
 /// the contact normal is perpendicular to both curves. If there is such a place, changes `c` into it and returns true.
 bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
                 Candidate& c) {
-  const PreciseSurface& a = *pair.base.faces[face].surface;
-  const PreciseSurface& b = *pair.base.faces[other].surface;
+  const AnalyticSurface& a = *pair.base.faces[face].surface;
+  const AnalyticSurface& b = *pair.base.faces[other].surface;
   if (placed.feature->half_width == 0) return false;
   const Place near_b = closest_place_to(pair, b, placed, c.sample);
   const Vector3d p_b = placed.point(near_b);

@@ -110,14 +110,14 @@ class PartImporter {
     for (const std::uint32_t t : triangles_.of(f))
       for (const std::uint32_t v : part_.mesh.triangles[t]) face.bounds.include(part_.mesh.vertices[v]);
     if (triangles_.of(f).empty()) return;
-    face.surface = PreciseSurface::from(part_.faces[f]);
+    face.surface = AnalyticSurface::from(part_.faces[f]);
     if (!face.surface || face.surface->kind() == SurfaceKind::plane) return;
     const Vector3d more = Vector3d::Constant(kSagitta * face.bounds.size().maxCoeff());
     face.bounds.min -= more;
     face.bounds.max += more;
   }
 
-  [[nodiscard]] const PreciseSurface* surface_of(std::uint32_t face) const {
+  [[nodiscard]] const AnalyticSurface* surface_of(std::uint32_t face) const {
     const auto& surface = body_.faces[face].surface;
     return surface ? &*surface : nullptr;
   }
@@ -127,7 +127,7 @@ class PartImporter {
     if (edge.faces.size() != 2 || edge.faces[0] == edge.faces[1]) return;  // a seam inside one surface
     ExactEdge made;
     made.faces = {face_base_ + edge.faces[0], face_base_ + edge.faces[1]};
-    const PreciseSurface* surface[2] = {surface_of(made.faces[0]), surface_of(made.faces[1])};
+    const AnalyticSurface* surface[2] = {surface_of(made.faces[0]), surface_of(made.faces[1])};
     points_[e] = points_along(edge, body_.options.spacing, surface[0], surface[1]);
     if (points_[e].size() < 2) return;
     const auto tangent = [&](std::size_t i) {

@@ -74,8 +74,8 @@ struct ExactEdge {
 };
 
 struct ExactFace {
-  std::optional<PreciseSurface> surface;  ///< none: freeform; contacts with it are the voxels'
-  std::optional<Trim> trim;               ///< present if the surface is
+  std::optional<AnalyticSurface> surface;  ///< none: freeform; contacts with it are the voxels'
+  std::optional<Trim> trim;                ///< present if the surface is
   Bounds bounds;
 };
 

@@ -147,10 +147,10 @@ void add_cone(ExactBody& body, const Cone& cone, const std::array<double, 2>& ra
 
 /// Projects a point onto both surfaces in turn. Their normals are not parallel along a sharp edge, so this converges to
 /// their intersection; along a smooth edge the point ends near both.
-Vector3d projected(const PreciseSurface* first, const PreciseSurface* second, Vector3d p) {
+Vector3d projected(const AnalyticSurface* first, const AnalyticSurface* second, Vector3d p) {
   constexpr int kRounds = 30;  // each halves the error where the faces meet at 45 degrees or more
   for (int i = 0; i < kRounds; ++i) {
-    for (const PreciseSurface* surface : {first, second}) {
+    for (const AnalyticSurface* surface : {first, second}) {
       if (surface == nullptr) continue;
       const SurfaceAt at = surface->at(p);
       p -= at.distance * at.normal;
@@ -161,8 +161,8 @@ Vector3d projected(const PreciseSurface* first, const PreciseSurface* second, Ve
 
 }  // namespace
 
-std::vector<Vector3d> points_along(const Edge& edge, double spacing, const PreciseSurface* first,
-                                   const PreciseSurface* second) {
+std::vector<Vector3d> points_along(const Edge& edge, double spacing, const AnalyticSurface* first,
+                                   const AnalyticSurface* second) {
   std::vector<Vector3d> points;
   const Segmentation split = segmentation_of(edge.curve, edge.t_range, spacing);
   for (int i = 0; split.segments > 0 && i <= split.segments; ++i)

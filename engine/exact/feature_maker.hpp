@@ -10,8 +10,8 @@ namespace verisim::exact {
 /// on the curve, at most `spacing` [m] apart and at least 16 segments to a turn. On other curves they are those of the
 /// tessellation, projected onto the surfaces of the edge's faces.
 /// @param first, second  those surfaces; null if not known
-[[nodiscard]] std::vector<Vector3d> points_along(const Edge& edge, double spacing, const PreciseSurface* first,
-                                                 const PreciseSurface* second);
+[[nodiscard]] std::vector<Vector3d> points_along(const Edge& edge, double spacing, const AnalyticSurface* first,
+                                                 const AnalyticSurface* second);
 
 /// Adds the samples of an edge. A concave edge has none: it cannot touch anything.
 /// @param side_sign  side_sign[i] (tangent x normal of face i) points out of that face

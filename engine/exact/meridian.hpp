@@ -65,7 +65,7 @@ template <SurfaceKind kKind, bool kIsArc>
 }
 
 /// @param shift, turn  of the curve within the step, in the coordinates of the surface's body
-[[nodiscard]] inline CurveFromSurface seen_from(const PreciseSurface& s, const Vector3d& origin, const Vector3d& x,
+[[nodiscard]] inline CurveFromSurface seen_from(const AnalyticSurface& s, const Vector3d& origin, const Vector3d& x,
                                                 const Vector3d& y, bool is_arc, const Vector3d& shift,
                                                 const Vector3d& turn) {
   return {s.to_own_axes(origin - s.point()),

@@ -38,7 +38,7 @@ bool is_limited_by(const BodyPair& pair, const ExactEdge& edge, std::uint32_t fa
          edge.limits_face_at(face, p, distance);
 }
 
-DistanceLead lead_of(const BodyPair& pair, const PreciseSurface& other, const PreciseSurface& mine,
+DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const AnalyticSurface& mine,
                      const PlacedFeature& placed, const SampleBlock& block, const BlockDistances& distances) {
   const RelativeMotion& motion = pair.motion;
   DistanceLead lead;

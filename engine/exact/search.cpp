@@ -74,7 +74,7 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   const RelativeMotion& motion = pair_.motion;
   const SampleBlock& block = pair_.mover.blocks[r];
   const Feature& feature = pair_.mover.features[block.feature];
-  const PreciseSurface& surface = *pair_.base.faces[face].surface;
+  const AnalyticSurface& surface = *pair_.base.faces[face].surface;
   if (feature.against_round_only && !surface.is_convex()) return;
   if (surface.kind() == SurfaceKind::plane && is_back_facing(block, surface.axis())) return;
   const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,

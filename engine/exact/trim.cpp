@@ -19,7 +19,7 @@ struct Layout {
   double a_metres, b_metres;  ///< metres per unit of the coordinate, the largest on the surface
 };
 
-Layout layout_of(const PreciseSurface& s, double widest_radius) {
+Layout layout_of(const AnalyticSurface& s, double widest_radius) {
   const double per_turn = 2 * pinned::kPi / kTurn;
   const double radius = s.meridian().radius;
   switch (s.kind()) {
@@ -36,7 +36,7 @@ Layout layout_of(const PreciseSurface& s, double widest_radius) {
   return {true, true, per_turn * (s.meridian().ring + radius), per_turn * radius};
 }
 
-double distance_from_axis(const PreciseSurface& s, const Vector3d& p) {
+double distance_from_axis(const AnalyticSurface& s, const Vector3d& p) {
   return profile_of(p, s.point(), s.axis(), [] { return Vector3d::Zero(); }).rho;
 }
 
@@ -86,7 +86,7 @@ int Trim::cell_at(const std::array<double, 2>& chart) const {
   return a < 0 || b < 0 ? -1 : b * a_.count + a;
 }
 
-Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
            std::span<const Border> borders, double cell) {
   // The chart's extent.
   Chart low{1e300, 1e300};
@@ -180,7 +180,7 @@ Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<co
   for (std::size_t i = 0; i < cell_count; ++i) first_edge_[i + 1] += first_edge_[i];
 }
 
-Trim::Answer Trim::find(const PreciseSurface& surface, const Vector3d& foot) const {
+Trim::Answer Trim::find(const AnalyticSurface& surface, const Vector3d& foot) const {
   const int at = cell_at(surface.chart(foot));
   if (at < 0) return {Where::outside, {}};
   const auto cell = static_cast<std::size_t>(at);

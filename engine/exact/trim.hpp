@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/exact/precise_surface.hpp"
+#include "engine/geometry/analytic_surface.hpp"
 #include "engine/geometry/mesh.hpp"
 
 namespace verisim::exact {
@@ -31,7 +31,7 @@ class Trim {
     std::uint32_t edge;
     std::span<const Vector3d> points;
   };
-  Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+  Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
        std::span<const Border> borders, double cell);
 
   struct Answer {
@@ -39,7 +39,7 @@ class Trim {
     std::span<const std::uint32_t> edges;  ///< border only: edges that pass within a cell or two, ascending
   };
   /// Where a point of the surface lies. About 10 ns.
-  [[nodiscard]] Answer find(const PreciseSurface& surface, const Vector3d& foot) const;
+  [[nodiscard]] Answer find(const AnalyticSurface& surface, const Vector3d& foot) const;
 
  private:
   struct Axis {

@@ -17,6 +17,7 @@ Clocks::Clocks(double dt) : dt_ns_(static_cast<std::uint64_t>(std::llround(dt * 
 void Clocks::add(double rate_hz, std::function<void(double)> f) {
   if (!(rate_hz >= 0.001 && rate_hz <= 1e6))
     fail(ErrorKind::input, "a clock of {} Hz was asked for; rates go from 0.001 to 1000000 Hz", rate_hz);
+  VERISIM_ASSERT(f != nullptr);
   clocks_.push_back({static_cast<std::uint64_t>(std::llround(rate_hz * 1000)), 1, std::move(f)});
 }
 

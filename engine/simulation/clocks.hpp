@@ -13,6 +13,7 @@ class Clocks {
  public:
   explicit Clocks(double dt);
   /// Ticks are numbered from 1: the first is due 1 / rate after the start. Error(input) unless 0.001 <= rate <= 1e6 Hz.
+  /// @pre f is not empty
   void add(double rate_hz, std::function<void(double)> f);
   /// Runs everything that is due at the end of frame number `frames` (frames computed so far), in the order of adding.
   void run_due(std::uint64_t frames, double t);

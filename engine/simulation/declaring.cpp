@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "engine/base/error.hpp"
-#include "engine/exact/precise_surface.hpp"
+#include "engine/geometry/analytic_surface.hpp"
 #include "engine/geometry/merged.hpp"
 #include "engine/voxel/voxelize.hpp"
 
@@ -16,7 +16,7 @@ struct DistanceFrom {
   Vector3d p;
 
   double operator()(const Face& face) const {
-    const auto surface = exact::PreciseSurface::from(face.surface);
+    const auto surface = AnalyticSurface::from(face.surface);
     return surface ? std::abs(surface->at(p).distance) : 0;
   }
   double operator()(const Edge& edge) const { return std::visit(*this, edge.curve); }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/exact/convex_step.hpp"
 #include "engine/geometry/merged.hpp"
@@ -102,6 +103,8 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.rigid = make_body(body.name, mass.volume, mass.centroid, mass.inertia, description.density);
   if (!description.X_WB.position.allFinite() || !description.X_WB.rotation.coeffs().allFinite())
     fail(ErrorKind::input, "'{}': its start pose is not finite", body.name);
+  if (!is_finite(description.twist.linear) || !is_finite(description.twist.angular))
+    fail(ErrorKind::input, "'{}': its start velocity is not finite", body.name);
   body.rigid.set_pose(description.X_WB);
   body.rigid.v_C = description.twist.linear;
   body.rigid.omega = description.twist.angular;
@@ -173,6 +176,13 @@ void make_entities(const BodyDescription& description, const World& world, Body&
 
 World make_world(const Scene& scene, unsigned threads, std::vector<Event>& events) {
   check(scene.parameters);
+  VERISIM_ASSERT(scene.parameters.hybrid != nullptr);
+  for (const BodyDescription& body : scene.bodies) VERISIM_ASSERT(!body.hybrid || *body.hybrid != nullptr);
+  for (const auto& device : scene.devices) VERISIM_ASSERT(device != nullptr);
+  for (const auto& companion : scene.companions) VERISIM_ASSERT(companion != nullptr);
+  for (const Grasp& grasp : scene.grasps) VERISIM_ASSERT(grasp.device < scene.devices.size());
+  for (const Grasp& grasp : scene.grasps) VERISIM_ASSERT(grasp.body < scene.bodies.size());
+  VERISIM_ASSERT(is_positive(scene.grasp_distance));
   World world{.parameters = scene.parameters,
               .dt = scene.parameters.timestep,
               .bodies = {},

@@ -100,6 +100,7 @@ Schema schema_of(const Columns& columns) {
 Recording::Recording(const World& world, const Stages& stages, const FrameCost& cost)
     : columns_(declare(world, stages, cost)), schema_(schema_of(columns_)), row_(schema_.row_bytes(), std::byte{0}) {
   VERISIM_ASSERT(schema_.state_bytes() == columns_.state_bytes());
+  VERISIM_ASSERT(schema_.row_bytes() == columns_.state_bytes() + sizeof hash_ + columns_.other_bytes());
 }
 
 void Recording::take(const World& world, const Stages& stages, const FrameCost& cost) {

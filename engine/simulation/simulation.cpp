@@ -118,6 +118,7 @@ void Simulation::describe(Schema& schema) const {
 }
 
 void Simulation::write_row(std::byte* row) const {
+  VERISIM_ASSERT(row != nullptr);
   const std::vector<std::byte>& from = implementation_->recording.row();
   std::memcpy(row, from.data(), from.size());
 }

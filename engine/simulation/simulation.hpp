@@ -64,7 +64,7 @@ class Simulation {
   [[nodiscard]] double mass(std::size_t body) const;
 
   /// Called between frames, at the first frame whose time is not before k / rate (integer arithmetic, no drift), in the
-  /// order of adding, after the companions. `f` gets the simulated time.
+  /// order of adding, after the companions. `f` gets the simulated time. @pre f is not empty
   void add_clock(double rate_hz, std::function<void(double)> f);
 
   /// An event for /events; kept until clear_events.

@@ -86,6 +86,7 @@ struct World {
 
 /// Places bodies, voxelizes what something that moves can come near (DESIGN rule 2), and prepares what the methods
 /// asked for need. Adds to `events` what was asked for and cannot act. Error(input) with body and reason.
+/// @pre no device, companion or method is null; grasps name a device and a body
 [[nodiscard]] World make_world(const Scene& scene, unsigned threads, std::vector<Event>& events);
 
 }  // namespace verisim

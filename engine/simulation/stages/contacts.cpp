@@ -33,6 +33,8 @@ Contacts::Contacts(const World& world)
       p_WC_(world.bodies.size(), Vector3d::Zero()) {
   for (std::size_t l = 0; l < world.links.size(); ++l) {
     const auto [first, second] = world.links[l];
+    VERISIM_ASSERT(first < second);
+    VERISIM_ASSERT(second < world.bodies.size());
     link_of_pair_[first * world.bodies.size() + second] = l;
     links_.push_back(link_between(world.bodies[first], world.bodies[second]));
   }
@@ -40,6 +42,7 @@ Contacts::Contacts(const World& world)
 }
 
 Pose Contacts::X_AB(const World& world, std::size_t l) const {
+  VERISIM_ASSERT(links_[l] != nullptr);
   const Pose X_W1 = world.bodies[world.links[l].first].rigid.pose();
   const Pose X_W2 = world.bodies[world.links[l].second].rigid.pose();
   return links_[l]->first_is_map() ? X_W1.inverse() * X_W2 : X_W2.inverse() * X_W1;

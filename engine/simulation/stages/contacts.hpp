@@ -31,7 +31,7 @@ class Contacts {
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return of_body_[body]; }
   /// m, the body's centre of mass when contacts were found: what their wrenches are about.
   [[nodiscard]] const Vector3d& found_at(std::size_t body) const { return p_WC_[body]; }
-  /// The body with the points as the one with the voxmap sees it.
+  /// The body with the points as the one with the voxmap sees it. @pre link(link) is not null
   [[nodiscard]] Pose X_AB(const World& world, std::size_t link) const;
 
  private:

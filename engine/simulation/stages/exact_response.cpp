@@ -129,6 +129,7 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
 void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t first_row, FrameCost& cost) {
   OfLink& of = links_[l];
   const Vector3d& p_WC = world.bodies[world.links[l].second].rigid.p_WC;
+  VERISIM_ASSERT(first_row <= solver_->row_count() + solver_->left_out());
   const auto& rows = of.search->rows().rows();
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);

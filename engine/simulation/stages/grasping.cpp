@@ -71,6 +71,8 @@ void Grasping::update(World& world, std::vector<Event>& events) {
 }
 
 void Grasping::take(World& world, std::size_t h, std::size_t index, bool by_script, std::vector<Event>& events) {
+  VERISIM_ASSERT(h < world.hands.size());
+  VERISIM_ASSERT(index < world.bodies.size());
   Hand& hand = world.hands[h];
   Body& body = world.bodies[index];
   if (hand.body != kNone) let_go(world, h, events);
@@ -83,6 +85,7 @@ void Grasping::take(World& world, std::size_t h, std::size_t index, bool by_scri
 }
 
 void Grasping::let_go(World& world, std::size_t h, std::vector<Event>& events) {
+  VERISIM_ASSERT(h < world.hands.size());
   Hand& hand = world.hands[h];
   if (hand.body == kNone) return;
   Body& body = world.bodies[hand.body];
@@ -95,6 +98,7 @@ void Grasping::let_go(World& world, std::size_t h, std::vector<Event>& events) {
 
 CouplingTarget target_of(const World& world, std::size_t h) {
   const Hand& hand = world.hands[h];
+  VERISIM_ASSERT(hand.body != kNone);
   const RigidBody& rigid = world.bodies[hand.body].rigid;
   const Pose now = hand.device->reading().handle * hand.X_HB;
   const Pose before = hand.handle_before * hand.X_HB;

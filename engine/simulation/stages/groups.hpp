@@ -18,6 +18,7 @@ void join_bodies(const std::vector<Link>& links, std::vector<std::size_t>& group
   };
   for (std::size_t l = 0; l < links.size(); ++l) {
     if (!joins(l)) continue;
+    VERISIM_ASSERT(links[l].second < group.size());
     const auto [low, high] = std::minmax({first_of(links[l].first), first_of(links[l].second)});
     group[high] = low;
   }

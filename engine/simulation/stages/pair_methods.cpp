@@ -18,6 +18,8 @@ std::unique_ptr<PairMethod> make(const World& world, const Link& link, const Con
                                     (first.entities ? second : first).name, (first.entities ? first : second).name)});
     return nullptr;
   }
+  VERISIM_ASSERT(first.voxels != nullptr);
+  VERISIM_ASSERT(second.voxels != nullptr);
   return method->make({world.parameters, first, second, *contacts.link(l)});
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/simulation/stages/groups.hpp"
 
 namespace verisim {
@@ -50,6 +52,7 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (group_[i] == i && watched_[i]) {
       scale_[i] = passive_scale(std::max(0.0, budget), work_[i]);
+      VERISIM_ASSERT(is_fraction(scale_[i]));
       budget -= work_[i].at(scale_[i]);
     }
     scale_[i] = scale_[group_[i]];
