@@ -3,12 +3,10 @@
 namespace verisim::exact {
 namespace {
 
-// A ball that a curve carries is the body's boundary where it touches the face it belongs to; elsewhere it is within
-// the body. Contacts fade out between these distances of their place from the face: a segment's end, where the nearest
-// place lies in the next segment, shall not stand for it.
-constexpr double kOwnFree = 1e-7;  // m
-constexpr double kOwnNone = 1e-6;
-constexpr double kFlush = 1e-7;  // m: what lies in a face's plane overlaps it by less
+constexpr double kSameDistance = 1e-12;  // m, of two faces: a tenth of what double precision says of a body of metres
+/// Of two unit normals' mean, least length: faces that meet at less than 12 degrees are a blade, whose normal means
+/// nothing.
+constexpr double kBlade = 0.1;
 
 /// On which side of a smooth edge a point lies: true if beyond it, seen from the face.
 bool is_beyond(const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
@@ -84,7 +82,7 @@ bool cross_edge(const Meeting& meeting, const PlacedFeature& placed, std::uint32
     c.at = a.at(c.p);
     other_at = b.at(c.p);
     const double d = c.at.distance - other_at.distance;
-    if (std::abs(d) < 1e-12) break;
+    if (std::abs(d) < kSameDistance) break;
     if (d < 0) {
       t_a = t;
       d_a = d;
@@ -103,7 +101,7 @@ bool cross_edge(const Meeting& meeting, const PlacedFeature& placed, std::uint32
   const double share = slope_b / (slope_b - slope_a);  // of a
   const Vector3d mixed = share * c.at.normal + (1 - share) * other_at.normal;
   const double length = mixed.norm();
-  if (length < 0.1) return false;
+  if (length < kBlade) return false;
   c.normal = mixed / length;
   c.gap = c.at.distance / length;
   c.edge_share = 4 * share * (1 - share);
@@ -113,9 +111,9 @@ bool cross_edge(const Meeting& meeting, const PlacedFeature& placed, std::uint32
 
 }  // namespace
 
-Rule rule_of(double a, double b) {
+Rule rule_of(double a, double b, double flush) {
   if (a >= 0 && b >= 0) return Rule::as_free;
-  return std::max(a, b) >= 0 && std::min(a, b) > -kFlush ? Rule::as_before : Rule::as_is;
+  return std::max(a, b) >= 0 && std::min(a, b) > -flush ? Rule::as_before : Rule::as_is;
 }
 
 std::uint32_t across(const ExactEdge& edge, std::uint32_t face) {
@@ -125,7 +123,7 @@ std::uint32_t across(const ExactEdge& edge, std::uint32_t face) {
 bool decides(const Meeting& meeting, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool first) {
   double a = mine.distance;
   double b = other.distance;
-  const Rule rule = rule_of(a, b);
+  const Rule rule = rule_of(a, b, meeting.frame.thresholds.flush);
   if (rule != Rule::as_is) {
     const Vector3d way = meeting.moved(p, rule == Rule::as_free ? meeting.frame.twist : meeting.frame.before);
     a += mine.normal.dot(way);
@@ -141,7 +139,8 @@ bool admit(const Meeting& meeting, const PlacedFeature& placed, std::uint32_t fa
     const Vector3d touching =
         meeting.frame.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - meeting.frame.p);
     const double within = std::abs(meeting.mover.faces[feature.own_face].surface->at(touching).distance);
-    c.weight = std::min(1.0, (kOwnNone - within) / (kOwnNone - kOwnFree));
+    const SearchThresholds& fade = meeting.frame.thresholds;
+    c.weight = std::min(1.0, (fade.own_none - within) / (fade.own_none - fade.own_free));
     return c.weight > 0 && is_on_face(meeting.base, face, foot) &&
            is_on_face(meeting.mover, feature.own_face, touching);
   }

@@ -10,8 +10,9 @@ namespace verisim::exact {
 /// passed last. A place that lies on one of them slides along that one and does not stumble over the other; what it
 /// would do without contact says nothing there, but how it moved before does.
 enum class Rule : std::uint8_t { as_is, as_free, as_before };
-/// @param a, b  distances of the place from the two faces [m]
-[[nodiscard]] Rule rule_of(double a, double b);
+/// @param a, b   distances of the place from the two faces [m]
+/// @param flush  m: SearchThresholds::flush
+[[nodiscard]] Rule rule_of(double a, double b, double flush);
 
 /// The face beyond an edge of `face`.
 [[nodiscard]] std::uint32_t across(const ExactEdge& edge, std::uint32_t face);

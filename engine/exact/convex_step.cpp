@@ -2,12 +2,16 @@
 
 #include <Eigen/Cholesky>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim::exact {
 namespace {
 
+/// Newton's method ends after a few: this bounds the time of a step whose numbers are beyond all measure.
 constexpr int kIterationsMax = 60;
+/// Of the cost: what a step would still win is lost in its rounding.
+constexpr double kNothing = 1e-15;
 /// Largest matrix of unknowns, on the stack.
 constexpr int kUnknownsMax = 6 * ConvexStep::kBodiesMax;
 using MatrixN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kUnknownsMax, kUnknownsMax>;
@@ -56,12 +60,16 @@ void ConvexStep::clear() {
 
 int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess) {
   VERISIM_ASSERT(bodies_.size() < kBodiesMax);
+  VERISIM_ASSERT(is_symmetric(M));
+  VERISIM_ASSERT(!(M.diagonal().array() <= 0).any());
   bodies_.push_back({p_WC, M, u0, guess, Vector6d::Zero()});
   return static_cast<int>(bodies_.size()) - 1;
 }
 
 void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second) {
   VERISIM_ASSERT(first != second);
+  VERISIM_ASSERT(std::min(first, second) >= kFixed);
+  VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));
   const auto rate = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
     const Vector3d n = sign * row.normal;
     const Vector3d arm = row.point - bodies_[at(body)].p_WC;
@@ -209,14 +217,14 @@ ConvexStep::Along ConvexStep::along(double t) const {
 /// Newton's decrement against the cost: what is left to win is lost in rounding.
 bool ConvexStep::gains_nothing() const {
   const Along begin = along(0);
-  return -begin.slope <= 1e-15 * begin.cost;
+  return -begin.slope <= kNothing * begin.cost;
 }
 
 /// The whole step if it lowers the cost enough, else where the cost is least. Least to the last digits: a stop short of
 /// there can be short of where the next row begins to act, and the next direction would run into that row again.
 double ConvexStep::step_length() const {
-  constexpr double kEnough = 1e-4;
-  constexpr double kFlat = 1e-10;  // of the slope at the start
+  constexpr double kEnough = 1e-4;  // of the slope at the start: Armijo's usual constant
+  constexpr double kFlat = 1e-10;   // of the slope at the start
   const Along begin = along(0);
   Along here = along(1);
   if (here.cost <= begin.cost + kEnough * begin.slope) return 1;
@@ -246,6 +254,7 @@ bool ConvexStep::advance(double t) {
 }
 
 int ConvexStep::solve(double dt) {
+  VERISIM_ASSERT(is_positive(dt));
   if (bodies_.empty()) return 0;
   start(dt);
   for (int i = 0; i < kIterationsMax; ++i) {
@@ -261,7 +270,13 @@ int ConvexStep::solve(double dt) {
   return kIterationsMax;
 }
 
+const Vector6d& ConvexStep::velocity(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
+  return bodies_[at(body)].u;
+}
+
 Wrench ConvexStep::wrench(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
   Vector6d sum = Vector6d::Zero();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side)

@@ -34,19 +34,22 @@ class ConvexStep {
   /// Forgets bodies and rows of the last step. Keeps nothing: the answer depends on this step alone.
   void clear();
 
-  /// @param M   symmetric positive definite, about the centre of mass
+  /// @param M   about the centre of mass
   /// @param u0  velocity that the body would have without contact
   /// @param guess  velocity to start from; any will do, last step's is a good one
-  /// @pre fewer than kBodiesMax bodies so far  @returns the body's number
+  /// @pre fewer than kBodiesMax bodies so far; M is symmetric positive definite  @returns the body's number
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess);
 
-  /// Rows between two bodies (numbers from add_body or kFixed, not both fixed). Rows beyond rows_max are left out.
+  /// Rows between two bodies. Rows beyond rows_max are left out.
+  /// @pre both are numbers from add_body or kFixed, and not the same
   void add_rows(std::span<const ContactRow> rows, int first, int second);
 
+  /// @pre dt is finite and above 0
   /// Solves; returns the Newton iterations that it took (0: no row acts). About 1 us for one body and 20 rows that act.
   int solve(double dt);
 
-  [[nodiscard]] const Vector6d& velocity(int body) const { return bodies_[static_cast<std::size_t>(body)].u; }
+  /// @pre body is a number from add_body, here and below
+  [[nodiscard]] const Vector6d& velocity(int body) const;
   /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
   [[nodiscard]] Wrench wrench(int body) const;
   /// Normal force of the i-th row added [N, >= 0], and its gap at the end of the step, linearised [m].

@@ -32,6 +32,10 @@ struct BodyOptions {
   double spacing = 0;               ///< m, > 0: longest segment; usually the voxel size
   double line_stiffness = 1.15e11;  ///< N/m per m
   double point_length = 0.004;      ///< m
+  // Heuristic: how little results hang on these is in exact_thresholds_test.
+  double smooth = 0.0087;  ///< sine of the angle between its two faces, 0.5 degrees: below it an edge is smooth
+  double group_angle =
+      0.5;  ///< rad: segments of an arc further apart push in different directions, each in its own row
 };
 
 /// How the material lies at an edge.
@@ -98,7 +102,8 @@ inline constexpr std::uint32_t kRun = 32;
 
 struct ExactBody {
   /// Parts that move as one, in body coordinates. Any part may be without b-rep: it then adds nothing. A face or edge
-  /// that no triangle or polyline belongs to adds nothing. @pre options.spacing > 0
+  /// that no triangle or polyline belongs to adds nothing. @pre spacing and line_stiffness are finite and above 0,
+  /// the other options not negative; meshes are whole (is_whole), edges name faces of their part
   ExactBody(std::span<const Part> parts, const BodyOptions& options);
 
   /// Is anything known precisely?

@@ -42,6 +42,22 @@ struct BodyMotion {
   Twist before = {};                 ///< in the last step, with the contacts that it had
 };
 
+/// What the search takes for near, flush, leaning or firm. Heuristic: chosen so that rows fade in and out instead of
+/// jumping; how little results hang on the numbers is in exact_thresholds_test.
+struct SearchThresholds {
+  /// m. A ball that a curve carries is the body's boundary where it touches the face it belongs to; elsewhere it is
+  /// within the body. Contacts fade out between these distances of their place from that face: a segment's end, where
+  /// the nearest place lies in the next segment, shall not stand for it. Above what the search's slide leaves (1e-10),
+  /// below what any clearance is (1e-5).
+  double own_free = 1e-7, own_none = 1e-6;
+  double flush = 1e-7;  ///< m: what lies in a face's plane overlaps it by less
+  /// Sines: 25 and 40 degrees. A contact whose normal leans away from all that the mover can touch with fades out
+  /// between them: a real one leans by no more than a body tilts in its fit.
+  double lean_free = 0.42, lean_none = 0.64;
+  double touching = 1e-6;  ///< m: a segment that slopes counts for the part of it that is as near as this
+  double firm = 0.5;       ///< share of its stiffness below which a place does not stand for its group alone
+};
+
 /// Work of one search; deterministic.
 struct SearchCost {
   std::uint64_t samples = 0;  ///< compared with a face
@@ -51,13 +67,14 @@ struct SearchCost {
 
 class ExactLink {
  public:
-  /// @pre neither is null
+  /// @pre neither is null; where contacts fade, `free` is below `none`
   ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
-            std::size_t rows_max = 4096);
+            std::size_t rows_max = 4096, const SearchThresholds& thresholds = {});
 
   /// Fills `rows` with every place whose gap is at most `margin` [m] (add the distance that the bodies can close within
   /// the step). The list is in the order of features and faces, whatever the poses. No allocation.
-  /// A pose that is not finite gives no row.
+  /// A motion that is not finite gives no row. @pre dt is finite and above 0; margin >= 0; rotations are unit, if
+  /// finite
   void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
 
   [[nodiscard]] const RowList& rows() const { return rows_; }
@@ -67,6 +84,7 @@ class ExactLink {
  private:
   std::shared_ptr<const ExactBody> first_, second_;
   RowList rows_;
+  SearchThresholds thresholds_;
   SearchCost cost_;
   double size_ = 0;  ///< m, half the diagonal of the smaller body
   double depth_max_ = 0;

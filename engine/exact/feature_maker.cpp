@@ -9,7 +9,6 @@ namespace verisim::exact {
 namespace {
 
 constexpr double kSegmentMax = pinned::kPi / 8;  // rad: the search's series for sine and cosine are made for half of it
-constexpr double kGroupAngle = 0.5;              // rad
 
 /// A sample before it is stored.
 struct Sample {
@@ -79,7 +78,7 @@ Feature feature_of(const Cut& cut, const BodyOptions& options) {
   f.stiffness = 2 * f.reach * options.line_stiffness;
   const bool is_arc = cut.kind == Feature::Kind::arc;
   f.group = is_arc ? static_cast<std::uint32_t>(
-                         std::clamp(static_cast<int>(kGroupAngle / cut.width), 1, static_cast<int>(kGroupMax)))
+                         std::clamp(static_cast<int>(options.group_angle / cut.width), 1, static_cast<int>(kGroupMax)))
                    : kGroupMax;
   return f;
 }

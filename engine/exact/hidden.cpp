@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/error.hpp"
 #include "engine/exact/border.hpp"
 
 namespace verisim::exact {
@@ -44,7 +45,7 @@ Lead lead_of(const Meeting& meeting, const PreciseSurface& other, const PreciseS
   bool some_free = false;
   meeting.measure_all(meeting.seen_from(other, placed, f.before), run, [&](std::uint32_t i, const Measure& m) {
     lead.now[i] = m.distance - sight.distance[i];
-    lead.rule[i] = rule_of(sight.distance[i], m.distance);
+    lead.rule[i] = rule_of(sight.distance[i], m.distance, f.thresholds.flush);
     lead.by_rule[i] = lead.now[i] + (lead.rule[i] == Rule::as_before ? m.change : 0);
     some_before = some_before || lead.rule[i] == Rule::as_before;
     some_free = some_free || lead.rule[i] == Rule::as_free;
@@ -71,7 +72,8 @@ void hide_beyond_an_edge(const Meeting& meeting, const PlacedFeature& placed, co
     return placed.point({0, meeting.mover.sample_c[run.begin + i], meeting.mover.sample_s[run.begin + i]});
   };
   std::uint32_t first = 0;
-  while (ahead[first] == kNever) ++first;
+  while (first < count && ahead[first] == kNever) ++first;
+  VERISIM_ASSERT(first < count);
   const ExactEdge* edge = hiding_edge(meeting, place(first), face);
   if (edge == nullptr) return;
   const auto& faces = meeting.base.faces;

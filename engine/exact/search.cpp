@@ -6,13 +6,6 @@
 namespace verisim::exact {
 namespace {
 
-// A contact whose normal leans away from all that the mover can touch with fades out between these sines.
-constexpr double kLeanFree = 0.42;  // 25 degrees
-constexpr double kLeanNone = 0.64;  // 40 degrees
-// A segment that slopes towards the surface touches with a part of its length only.
-constexpr double kTouching = 1e-6;  // m: what is as near as this counts as touching
-constexpr double kFirm = 0.5;       // share of its stiffness below which a place does not stand for its group alone
-
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const SearchFrame& frame, RowList& rows, SearchCost& cost)
@@ -27,7 +20,7 @@ class Search {
   [[nodiscard]] bool looks_away(const Run& run, const Vector3d& normal) const;
   [[nodiscard]] double lean_weight(std::uint32_t sample, const Vector3d& normal) const;
   [[nodiscard]] double lean_weight_in_mover(std::uint32_t sample, const Vector3d& n) const;
-  [[nodiscard]] static double touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count);
+  [[nodiscard]] double touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool measure_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
                                        Candidate& c);
   void add_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> about, int side,
@@ -115,7 +108,7 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
   firm.weight = 0;
   while (true) {
     const auto next = std::min_element(ahead.begin(), ahead.end());
-    const bool is_firm = best.gap_ahead == kNever || best.weight >= kFirm;
+    const bool is_firm = best.gap_ahead == kNever || best.weight >= m.frame.thresholds.firm;
     if (!(*next < (is_firm ? best.gap_ahead : std::max(best.gap_ahead, 0.0)))) break;
     Candidate c;
     c.group = begin;
@@ -129,7 +122,7 @@ void Search::meet_group(const PlacedFeature& placed, const CurveFromSurface& cur
   }
   if (best.gap_ahead == kNever) return;
   add(placed, best, count, face);
-  if (best.weight < kFirm && firm.weight > best.weight) {
+  if (best.weight < m.frame.thresholds.firm && firm.weight > best.weight) {
     firm.weight -= best.weight;
     add(placed, firm, count, face);
   }
@@ -183,10 +176,10 @@ void Search::add_end(const PlacedFeature& placed, const Candidate& best, std::sp
 
 /// How much of a group's length touches: the overlap at its nearest place is used up where the group, sloping, comes
 /// out of the surface.
-double Search::touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) {
+double Search::touching_share(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const {
   const double rise =
       std::abs(c.normal.dot(placed.tangent(c.place)) - placed.feature->growth) * 2 * placed.feature->half_width * count;
-  const double overlap = kTouching + std::max(0.0, -c.gap);
+  const double overlap = meeting_.frame.thresholds.touching + std::max(0.0, -c.gap);
   return rise > overlap ? overlap / rise : 1;
 }
 
@@ -199,7 +192,8 @@ double Search::lean_weight_in_mover(std::uint32_t sample, const Vector3d& n) con
   double lean = 0;
   for (std::uint32_t i = meeting_.mover.wedge_begin[sample]; i < meeting_.mover.wedge_begin[sample + 1]; ++i)
     lean = std::max(lean, -n.dot(meeting_.mover.wedges[i]));
-  return std::clamp((kLeanNone - lean) / (kLeanNone - kLeanFree), 0.0, 1.0);
+  const SearchThresholds& fade = meeting_.frame.thresholds;
+  return std::clamp((fade.lean_none - lean) / (fade.lean_none - fade.lean_free), 0.0, 1.0);
 }
 
 /// Does a plane look the wrong way for all of a run?

@@ -17,6 +17,7 @@ struct SearchFrame {
   double dt, margin;
   double size;  ///< m, half the diagonal of the smaller body
   bool mover_is_second;
+  SearchThresholds thresholds;
 };
 
 /// Fixed working memory of a search.

@@ -14,14 +14,15 @@ using Assignment = std::array<int, kLedsMax>;
 
 /// The assignment whose blobs lie nearest to where the LEDs are expected (sum of squared pixel distances, none beyond
 /// `gate` pixels; an LED left out costs gate^2). All injective assignments are compared: at most 209.
-/// @pre expected holds a pixel for each of `led_count` LEDs
+/// @pre expected holds a pixel for each of at most kLedsMax LEDs; gate is finite and not negative
 [[nodiscard]] Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vector2d> expected,
                                             double gate);
 
 /// Follows the first two LEDs through swaps, ghosts and short losses. Fixed size, no allocation.
 class PairFollower {
  public:
-  PairFollower(const LedLayout& leds, const Pinhole& pinhole);
+  /// @pre the layout has two LEDs or more
+  PairFollower(const LedLayout& leds, const Pinhole& pinhole, const Thresholds& thresholds = {});
 
   struct Match {
     TwoPointPose pose;
@@ -38,7 +39,7 @@ class PairFollower {
   [[nodiscard]] Match reconsidered(const Reading& reading, const Match& current, const Matrix3d& C_LR);
   /// Whether a blob is nearer to one that stood beside the followed pair than, by this much, to an LED's place.
   [[nodiscard]] bool is_stranger(const Blob& blob, double distance_square_to_led) const;
-  /// Follow these two from now on.
+  /// Follow these two from now on. @pre t is finite; the match's blobs are two of the reading's
   void follow(double t, const Reading& reading, const Match& match);
   void forget() {
     followed_ = false;
@@ -59,6 +60,7 @@ class PairFollower {
   LedLayout leds_;
   Pinhole pinhole_;
   LedPair pair_;
+  Thresholds thresholds_;
   bool followed_ = false;
   double t_ = 0;
   std::array<Blob, 2> last_;

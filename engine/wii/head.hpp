@@ -12,8 +12,10 @@ namespace verisim::wii {
 class Head {
  public:
   /// Error(input) as make_tracker, for the source's settings.
+  /// @pre source is not null; X_WL is finite, its rotation unit
   Head(std::string name, std::unique_ptr<ReportSource> source, const std::string& tracker, const Pose& X_WL);
 
+  /// @pre t is finite
   /// Takes every report that is due at simulated time t [s] or before. Called once a frame; costs a comparison unless
   /// one is. No allocation.
   void follow(double t);

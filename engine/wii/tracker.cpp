@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/wii/trackers.hpp"
 
@@ -25,7 +26,9 @@ void require_positive(const char* what, double value, double max) {
     fail(ErrorKind::input, "tracker settings: {} is {} but must lie between 0 and {}; correct it", what, value, max);
 }
 
-void check(const TrackerSettings& settings) {
+}  // namespace
+
+void check_settings(const TrackerSettings& settings) {
   require_positive("horizontal field of view [rad]", settings.fov.horizontal, pinned::kPi);
   require_positive("vertical field of view [rad]", settings.fov.vertical, pinned::kPi);
   require_positive("pixel_sigma", settings.pixel_sigma, kWidth);
@@ -44,9 +47,9 @@ void check(const TrackerSettings& settings) {
   if (!(across >= 0.01))
     fail(ErrorKind::input, "leds: the first two are {} m apart seen from the front but must be 0.01 m; reorder them",
          across);
+  if (!is_placement(settings.X_R1R2))
+    fail(ErrorKind::input, "tracker settings: the second remote's placement is not finite with a unit quaternion");
 }
-
-}  // namespace
 
 const std::vector<std::string>& tracker_names() {
   static const std::vector<std::string> names = [] {
@@ -60,7 +63,7 @@ const std::vector<std::string>& tracker_names() {
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerSettings& settings) {
   for (const Entry& entry : kTrackers) {
     if (entry.name != name) continue;
-    check(settings);
+    check_settings(settings);
     return entry.make(settings);
   }
   const std::string near = nearest_name(std::string(name), tracker_names());

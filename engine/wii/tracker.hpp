@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "engine/wii/pinhole.hpp"
+#include "engine/wii/thresholds.hpp"
 
 namespace verisim::wii {
 
@@ -54,6 +55,7 @@ struct TrackerSettings {
   double yaw_sigma = 9 * kDegree;      ///< how far heads turn: what two LEDs cannot see
   double pitch_sigma = 5 * kDegree;    ///< how far heads nod
   Pose X_R1R2;                         ///< stereo: the second remote in coordinates of the first
+  Thresholds thresholds = {};
 };
 
 struct Report {
@@ -82,6 +84,9 @@ class Tracker {
 
 /// "geometric", "vrpn-compatible", "three-led", "scaat", "stereo".
 [[nodiscard]] const std::vector<std::string>& tracker_names();
+
+/// Error(input) for settings that no tracker takes: see make_tracker.
+void check_settings(const TrackerSettings& settings);
 
 /// Error(input) for an unknown name, a layout that the tracker cannot use (first two LEDs less than 1 cm apart across,
 /// three-led with fewer than three LEDs) or settings that are not positive and finite.
