@@ -1,8 +1,8 @@
-// Conditions that contracts speak of. VERISIM_ASSERT asks them of arguments at the doors of a folder; checks at the edge
-// ask the same of input and throw an Error, so that what the edge let in never breaks a contract.
+// Conditions that contracts speak of. VERISIM_ASSERT asks them of arguments at the doors of a folder; checks at the
+// edge ask the same of input and throw an Error, so that what the edge let in never breaks a contract.
 //
-// All are false for what is not a number, but is_symmetric: a simulation that diverges fills its matrices with infinities
-// within a frame, and that is found, and told to the user, at the frame's end.
+// All are false for what is not a number, but is_symmetric: a simulation that diverges fills its matrices with
+// infinities within a frame, and that is found, and told to the user, at the frame's end.
 #pragma once
 
 #include <algorithm>
@@ -55,8 +55,8 @@ template <typename Square>
 /// Each element above the one before.
 template <typename Range>
 [[nodiscard]] bool is_ascending(const Range& range) {
-  return std::adjacent_find(std::begin(range), std::end(range), [](const auto& a, const auto& b) { return !(a < b); }) ==
-         std::end(range);
+  return std::adjacent_find(std::begin(range), std::end(range),
+                            [](const auto& a, const auto& b) { return !(a < b); }) == std::end(range);
 }
 
 }  // namespace verisim

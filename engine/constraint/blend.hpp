@@ -39,13 +39,14 @@ struct ConstraintForce {
   int steps = 0;
 };
 
-/// @pre none of `engaged` is null and each alpha is in [0, 1]; the pose is finite and its rotation unit; stiffnesses are
-/// finite and not negative, the length is finite and above 0
+/// @pre none of `engaged` is null and each alpha is in [0, 1]; the pose is finite and its rotation unit; stiffnesses
+/// are finite and not negative, the length is finite and above 0
 /// @param center where B's wrench is taken about (its centre of mass), body coordinates of B
 [[nodiscard]] ConstraintForce constraint_force(std::span<const Engaged> engaged, const Pose& X_AB,
                                                const Vector3d& center, const BlendParameters& parameters);
 
-/// (1 - alpha) collision + alpha constraint. Both about the same point, in the same coordinates. @pre alpha is in [0, 1]
+/// (1 - alpha) collision + alpha constraint. Both about the same point, in the same coordinates. @pre alpha is in [0,
+/// 1]
 [[nodiscard]] Wrench blended(const Wrench& collision, const Wrench& constraint, double alpha);
 
 }  // namespace verisim

@@ -38,6 +38,7 @@ struct LoadOptions {
 void write_step(const std::string& path, const std::vector<std::pair<std::string, Solid>>& solids);
 
 /// Binary STL in the mesh's own units times `units_per_metre` (1000: millimetres).
+/// @pre is_whole(mesh); units_per_metre is finite and above 0
 void write_stl(const std::string& path, const TriangleMesh& mesh, double units_per_metre);
 
 /// One sentence per thing that should be questioned before simulating: a part larger than 100 m or smaller than 10 um

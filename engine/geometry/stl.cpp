@@ -3,6 +3,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/geometry/loader.hpp"
 #include "engine/geometry/write_file.hpp"
@@ -31,6 +32,8 @@ void write_file(const std::string& path, const std::string& content) {
 }
 
 void write_stl(const std::string& path, const TriangleMesh& mesh, double units_per_metre) {
+  VERISIM_ASSERT(is_whole(mesh));
+  VERISIM_ASSERT(is_positive(units_per_metre));
   std::string out = "binary STL written by verisim";  // a head that began with "solid" would be taken for ASCII
   out.resize(80, ' ');
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());

@@ -71,6 +71,7 @@ class Reservation {
   ~Reservation();  ///< gives back what the file did not need
   Reservation(const Reservation&) = delete;
   Reservation& operator=(const Reservation&) = delete;
+  /// @pre step > 0
   /// Makes sure that the file can grow by `bytes`. Error(io). Usually one fstat; takes `step` more when it takes some.
   void ensure(std::uint64_t bytes, std::uint64_t step);
 

@@ -44,6 +44,7 @@ class RunWriter {
   /// Makes sure that so much can be appended and flushed. Called before, its Error leaves a file that is whole.
   void reserve(std::size_t rows, std::size_t events);
   /// Appends `count` rows that lie one after the other. About 4 us a column and 10 ns a value.
+  /// @pre rows (or events) are there, if there are any
   void append(const std::byte* rows, std::size_t count);
   void append(const StoredEvent* events, std::size_t count);
   /// Hands all that was appended to the system, in an order that survives a kill. From the first time with a row on,

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/base/named_array.hpp"
 #include "engine/geometry/entity.hpp"
 
@@ -29,6 +30,7 @@ class FeatureSets {
 
   /// @param owner  what errors call the body
   /// @param most   how many sets may be stored besides the empty set, up to kMostSets
+  /// @pre most <= kMostSets
   explicit FeatureSets(std::string owner = {}, std::size_t most = kMostSets);
 
   /// The number of the set with these entities; a new set gets the next number. About 20 ns.
@@ -42,6 +44,7 @@ class FeatureSets {
   /// Entities of a set, ascending. Valid until the next intern().
   /// @pre id < size()
   [[nodiscard]] std::span<const EntityNumber> operator[](FeatureSetId id) const {
+    VERISIM_ASSERT(id < size());
     return {entities_.data() + begin_[id], begin_[id + std::size_t{1}] - begin_[id]};
   }
 

@@ -29,6 +29,7 @@ struct PlaneCrossing {
 class GridCurve {
  public:
   /// Places an edge's curve in a frame: p -> axes (p - origin) * scale. An edge of another kind is its polyline.
+  /// @pre scale is finite and above 0; axes and origin are finite
   GridCurve(const Edge& edge, const Matrix3d& axes, const Vector3d& origin, double scale);
 
   /// Does the curve pass through the closed box? 10 ns for a line, 100 ns for an arc.

@@ -21,6 +21,7 @@ static_assert(kInheritedLayers <= kBand);
 /// share a face with it, else an edge, else a corner) if these agree. If not, it lies behind a rim: then the set with
 /// the most entities among all of them, which is the rim's, where both faces are; of several such the first in the
 /// order of z, y, x. `of_voxel`: the set of each surface voxel. 2 bytes per slot.
+/// @pre of_voxel has a set for each of the map's surface voxels, and `sets` has each of these
 [[nodiscard]] std::vector<FeatureSetId> sets_by_slot(const Voxmap& map, const std::vector<FeatureSetId>& of_voxel,
                                                      const FeatureSets& sets, unsigned threads);
 

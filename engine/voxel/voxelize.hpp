@@ -28,12 +28,14 @@ struct VoxelizeOptions {
 
 /// Does the closed triangle abc touch the closed box of the given half side around center, within 2^-20 of the half
 /// side outward? Separating axes, double arithmetic. All in the same units. Zero-area triangles are segments or points.
+/// @pre half_side > 0
 [[nodiscard]] bool triangle_touches_box(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& center,
                                         double half_side);
 
 /// Places the grid: per axis the bounding box's faces lie as far from voxel walls as possible (cell centre or cell wall
 /// at the box's centre, whichever is better; cell wall if equal), after a border of one brick and up to seven more
-/// cells, as many as make the band around both faces fill the fewest bricks.
+/// cells, as many as make the band around both faces fill the fewest bricks. @pre bounds are finite and hold a point;
+/// voxel_size is finite and above 0
 [[nodiscard]] Vector3d grid_origin(const Bounds& bounds, double voxel_size, Eigen::Vector3i& bricks);
 
 }  // namespace verisim

@@ -21,7 +21,7 @@ class Server {
   static constexpr std::uint32_t kGreetingMax = 10;   ///< s that a client may take to send its cookie
 
   /// Listens at `at` on TCP and UDP; port 0 takes one that is free for both. `devices` and `types` are the names that
-  /// this server sends; ping and pong are added. Error(io) if the port is taken.
+  /// this server sends; ping and pong are added. Error(io) if the port is taken. @pre is_name(each of them)
   Server(const Address& at, std::vector<std::string> devices, std::vector<std::string> types);
 
   /// Called with what a client sends to one of our devices, pings excepted. `reply` answers that client alone.
@@ -29,10 +29,10 @@ class Server {
   using RequestHandler = std::function<void(const Received& request, const Reply& reply)>;
   void on_request(RequestHandler handler) { request_handler_ = std::move(handler); }
 
-  /// Waits up to `wait_ms` for something to happen, and deals with everything that has.
+  /// Waits up to `wait_ms` for something to happen, and deals with everything that has. @pre wait_ms >= 0
   void turn(Timestamp now, int wait_ms);
   /// To all clients: as a datagram to those that asked for datagrams, else by TCP. Leaves with the next turn at the
-  /// latest.
+  /// latest. @pre device and type are among the names given to the constructor
   void publish(std::string_view device, std::string_view type, Timestamp time, View payload);
 
   [[nodiscard]] const Address& address() const { return address_; }

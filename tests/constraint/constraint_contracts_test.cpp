@@ -149,8 +149,7 @@ TEST(BlendDeathTest, SolvesWhatIsThereWithASpringThatPulls) {
   const Vector3d o = Vector3d::Zero();
   const std::array<Engaged, 1> engaged = {{{&c, 1, 1}}};
   EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {-1, 1, 1, 4}), "is_not_negative(parameters.stiffness)");
-  EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {1, kNaN, 1, 4}),
-                "is_not_negative(parameters.angular_stiffness)");
+  EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {1, kNaN, 1, 4}), "is_not_negative(parameters.angular_stiffness)");
   EXPECT_BROKEN(constraint_force(engaged, Pose(), o, {1, 1, 0, 4}), "is_positive(parameters.length)");
   EXPECT_BROKEN(constraint_force(engaged, kStretched, o, {}), "is_placement(X_AB)");
   EXPECT_BROKEN(constraint_force(engaged, Pose(), {0, kNaN, 0}, {}), "is_finite(center)");

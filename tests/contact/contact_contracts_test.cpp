@@ -33,8 +33,8 @@ TEST(BroadPhaseDeathTest, KeepsBoxesThatAreSomewhere) {
 }
 
 /// Both ways to ask, the fast and the plain one, have the same door.
-class QueryDeathTest
-    : public ::testing::TestWithParam<void (*)(const Voxmap&, const Pointshell&, const Pose&, ContactList&, QueryCost&)> {
+class QueryDeathTest : public ::testing::TestWithParam<void (*)(const Voxmap&, const Pointshell&, const Pose&,
+                                                                ContactList&, QueryCost&)> {
  protected:
   void take(const Pose& X_AB = {}) {
     QueryCost cost;
@@ -69,12 +69,12 @@ TEST_P(QueryDeathTest, TurnsByARotation) {
   take(nowhere);
   EXPECT_EQ(contacts_.size, 0U);
 }
-INSTANTIATE_TEST_SUITE_P(FastAndPlain, QueryDeathTest,
-                         ::testing::Values(
-                             [](const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts,
-                                QueryCost& cost) { query(a, b, X_AB, contacts, cost); },
-                             [](const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts,
-                                QueryCost& cost) { query_plainly(a, b, X_AB, contacts, cost); }));
+INSTANTIATE_TEST_SUITE_P(
+    FastAndPlain, QueryDeathTest,
+    ::testing::Values([](const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts,
+                         QueryCost& cost) { query(a, b, X_AB, contacts, cost); },
+                      [](const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts,
+                         QueryCost& cost) { query_plainly(a, b, X_AB, contacts, cost); }));
 
 TEST(PenaltyDeathTest, ReadsWithinItsColumnsAndPushes) {
   ContactList contacts(8);
@@ -103,7 +103,8 @@ TEST(CollisionLinkDeathTest, RespondsWithAStepAndALaw) {
   link.query(first.X_WB, second.X_WB, cost);
   ASSERT_GT(link.contacts().size, 0U) << "without a contact nothing is asked";
   EXPECT_BROKEN(link.respond(first, second, {}, 0), "is_positive(dt)");
-  EXPECT_BROKEN(link.respond(first, second, {kInfinity, 0.5, true}, kStep), "is_not_negative(parameters.stiffness_max)");
+  EXPECT_BROKEN(link.respond(first, second, {kInfinity, 0.5, true}, kStep),
+                "is_not_negative(parameters.stiffness_max)");
   EXPECT_BROKEN(link.respond_at_once(first, second, {1, -0.5, true}, kStep),
                 "is_not_negative(parameters.damping_ratio)");
   LinkBody lopsided = second;

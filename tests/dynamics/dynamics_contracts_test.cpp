@@ -115,14 +115,11 @@ TEST_P(StepDeathTest, PassesOnLoadsThatAreNotFinite) {
 }
 INSTANTIATE_TEST_SUITE_P(
     AllSteps, StepDeathTest,
-    ::testing::Values([](RigidBody& body, const Loads& loads, double dt) { (void)step_semi_implicit(body, loads, dt); },
-                      [](RigidBody& body, const Loads& loads, double dt) { (void)step_implicit(body, loads, dt); },
-                      [](RigidBody& body, const Loads& loads, double dt) {
-                        (void)contact_work_semi_implicit(body, loads, dt);
-                      },
-                      [](RigidBody& body, const Loads& loads, double dt) {
-                        (void)contact_work_implicit(body, loads, dt);
-                      }));
+    ::testing::Values(
+        [](RigidBody& body, const Loads& loads, double dt) { (void)step_semi_implicit(body, loads, dt); },
+        [](RigidBody& body, const Loads& loads, double dt) { (void)step_implicit(body, loads, dt); },
+        [](RigidBody& body, const Loads& loads, double dt) { (void)contact_work_semi_implicit(body, loads, dt); },
+        [](RigidBody& body, const Loads& loads, double dt) { (void)contact_work_implicit(body, loads, dt); }));
 
 TEST(ImplicitStepDeathTest, IsBegunBeforeItIsEnded) {
   RigidBody body = brick(1, {1, 2, 3});

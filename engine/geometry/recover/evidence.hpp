@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/surface_value.hpp"
 
 namespace verisim::recover {
@@ -12,6 +13,7 @@ namespace verisim::recover {
 
 /// Five different places around each circle that makes the surface, or four at equal steps: a circle through three
 /// points, or through the corners of a trapezoid, says nothing.
-[[nodiscard]] bool is_evident(const SurfaceValue& surface, std::span<const Vector3d> points, double tolerance);
+[[nodiscard]] bool is_evident(const SurfaceValue& surface, std::span<const Vector3d> points, double tolerance,
+                              const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

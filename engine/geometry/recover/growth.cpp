@@ -11,7 +11,6 @@ namespace verisim::recover {
 namespace {
 
 constexpr int kGrowings = 8;
-constexpr double kSnug = 0.5;  // of the tolerance
 
 bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points, double within) {
   return std::ranges::all_of(points, [&](const Vector3d& p) { return std::abs(s.distance(p)) <= within; });
@@ -67,8 +66,8 @@ std::optional<Candidate> Growth::from(const std::vector<std::uint32_t>& facets, 
   if (best.triangles.empty()) return std::nullopt;
   const std::vector<Vector3d> points = regions_.points_of_triangles(best.triangles, by_inner);
   if (surface && passes_through(*surface, points, tolerance)) best.fit.surface = *surface;
-  if (!passes_through(best.fit.surface, points, kSnug * tolerance)) return std::nullopt;
-  if (!is_evident(best.fit.surface, points, tolerance)) return std::nullopt;
+  if (!passes_through(best.fit.surface, points, regions_.thresholds.snug * tolerance)) return std::nullopt;
+  if (!is_evident(best.fit.surface, points, tolerance, regions_.thresholds)) return std::nullopt;
   best.area = regions_.area_of(best.triangles);
   return best;
 }

@@ -10,11 +10,8 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kNearlyTangent = 0.9;    // cosine
-constexpr double kCovers = 0.5;           // of a triangle's area, in the surface's coordinates
 constexpr double kQuarterOfATube = -0.2;  // cosine: a fan at most spans a fillet
 constexpr double kNoise = 4;              // tolerances: nearer to an axis no direction, lower than that no area
-constexpr double kRim = 30;               // tolerances: of drawings, against that of numbers
 
 }  // namespace
 
@@ -48,7 +45,7 @@ struct Piece::Corners {
 bool Piece::is_on(std::uint32_t t) const {
   for (std::size_t i = 0; i < 3; ++i) {
     const bool is_rim = limits_.is_rim != nullptr && (*limits_.is_rim)[mesh_.triangles[t][i]];
-    const double within = (is_rim ? kRim : 1) * limits_.tolerance;
+    const double within = (is_rim ? limits_.thresholds.rim : 1) * limits_.tolerance;
     if (std::abs(surface_.distance(mesh_.corner(t, i))) > within) return false;
   }
   return true;
@@ -85,8 +82,8 @@ bool Piece::is_regular(std::uint32_t t) const {
   }
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-  if ((limits_.inside_out ? -along : along) <= kNearlyTangent) return false;
-  return surface_.kind == Kind::sphere || cover_of(c).area > kCovers * mesh_.areas[t];
+  if ((limits_.inside_out ? -along : along) <= limits_.thresholds.nearly_tangent) return false;
+  return surface_.kind == Kind::sphere || cover_of(c).area > limits_.thresholds.covers * mesh_.areas[t];
 }
 
 bool Piece::is_possible(std::uint32_t t) const {
@@ -102,7 +99,7 @@ bool Piece::is_possible(std::uint32_t t) const {
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   if (is_sphere) {
     const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-    return (limits_.inside_out ? -along : along) > kCovers;
+    return (limits_.inside_out ? -along : along) > limits_.thresholds.covers;
   }
   const Cover cover = cover_of(c);
   return cover.area > kNoise * limits_.tolerance * cover.length;

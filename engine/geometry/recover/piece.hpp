@@ -6,6 +6,7 @@
 // has all its corners on the cone.
 #pragma once
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
 #include "engine/geometry/recover/surface_value.hpp"
 
@@ -16,6 +17,7 @@ struct PieceLimits {
   const std::vector<bool>* is_rim;  ///< vertices that may be further from it; nullptr: none
   double cos_step;                  ///< cosine of the longest step around it
   bool inside_out;                  ///< the material is outside of it
+  RecoverThresholds thresholds;
 };
 
 class Piece {

@@ -13,17 +13,14 @@ namespace verisim::recover {
 namespace {
 
 constexpr Kind kRoundKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
-constexpr double kLargerByFar = 1.001;  // in area, for a kind that is less simple
-constexpr std::size_t kAgain = 3;       // steps from what was taken
-constexpr std::size_t kBarren = 2;      // steps from where nothing fits
-constexpr double kNarrower = 0.25;      // of a plane's width: a neighbour that curves away from it
+constexpr std::size_t kAgain = 3;   // steps from what was taken
+constexpr std::size_t kBarren = 2;  // steps from where nothing fits
 constexpr std::size_t kFewFacets = 4;
-constexpr double kMostlySharp = 0.6;  // of a border
 
 class Search {
  public:
-  Search(const CanonicalMesh& mesh, double tolerance, double round_step)
-      : regions_(mesh, tolerance, round_step),
+  Search(const CanonicalMesh& mesh, double tolerance, double round_step, const RecoverThresholds& thresholds)
+      : regions_(mesh, tolerance, round_step, thresholds),
         facets_(regions_.facets.all),
         surroundings_(regions_),
         growth_(regions_),
@@ -91,7 +88,7 @@ class Search {
         for (const bool by_inner : {false, true}) {
           if (by_inner && kind != Kind::torus) continue;  // through two circles pass cones and spheres, always
           std::optional<Candidate> next = growth_.from(sample, kind, by_inner, seed);
-          if (next && (!best || next->area > kLargerByFar * best->area)) best = std::move(next);
+          if (next && (!best || next->area > regions_.thresholds.larger_by_far * best->area)) best = std::move(next);
         }
       }
     }
@@ -106,7 +103,7 @@ class Search {
   /// A piece of a round surface has neighbours about as wide as itself; a plane that passes into one has narrow ones.
   [[nodiscard]] bool borders_as_a_plane(std::uint32_t facet) const {
     return std::ranges::all_of(facets_[facet].sides, [&](const FacetSide& side) {
-      return !side.smooth || width(side.facet, side) < kNarrower * width(facet, side);
+      return !side.smooth || width(side.facet, side) < regions_.thresholds.narrower * width(facet, side);
     });
   }
 
@@ -116,7 +113,7 @@ class Search {
       all += side.length;
       if (!side.smooth) sharp += side.length;
     }
-    return sharp > kMostlySharp * all;
+    return sharp > regions_.thresholds.mostly_sharp * all;
   }
 
   /// Planes that meet at small angles are few; pieces of a round or free surface are many, or border on one.
@@ -191,8 +188,9 @@ class Search {
 
 }  // namespace
 
-std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step) {
-  return Search(mesh, tolerance, round_step).run();
+std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step,
+                                 const RecoverThresholds& thresholds) {
+  return Search(mesh, tolerance, round_step, thresholds).run();
 }
 
 }  // namespace verisim::recover

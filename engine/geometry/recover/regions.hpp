@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/geometry/entity.hpp"
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/facets.hpp"
 #include "engine/geometry/recover/piece.hpp"
 
@@ -25,7 +26,7 @@ struct TakenRegion {
 class Regions {
  public:
   /// @param tolerance  m, of vertices from their surface  @param round_step  rad, see find_regions
-  Regions(const CanonicalMesh& mesh, double tolerance, double round_step);
+  Regions(const CanonicalMesh& mesh, double tolerance, double round_step, const RecoverThresholds& thresholds);
 
   [[nodiscard]] bool is_free(std::uint32_t triangle) const { return of_triangle_[triangle] == kNone; }
   [[nodiscard]] bool is_free_facet(std::uint32_t facet) const { return taken_of_facet_[facet] == 0; }
@@ -56,6 +57,7 @@ class Regions {
 
   const CanonicalMesh& mesh;
   const double tolerance;
+  const RecoverThresholds thresholds;
   const double cos_smooth;  ///< of the largest angle between neighbouring facets of one round surface
   const double cos_step;    ///< of the longest step around it
   const Facets facets;

@@ -8,10 +8,9 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr std::size_t kPatch = 200;    // triangles at most
-constexpr double kMostlySmooth = 0.7;  // of a border
-constexpr std::size_t kCrowd = 12;     // patches side by side with nothing else around them …
-constexpr std::size_t kFewEach = 30;   // … and fewer triangles than this, each
+constexpr std::size_t kPatch = 200;   // triangles at most
+constexpr std::size_t kCrowd = 12;    // patches side by side with nothing else around them …
+constexpr std::size_t kFewEach = 30;  // … and fewer triangles than this, each
 
 class Giving {
  public:
@@ -128,7 +127,7 @@ class Patches {
       if (beside != kNone) whole += length;  // an open end says nothing
       if (is_smooth && (regions_.is_free(beside) || is_patch_[regions_.region_of(beside)])) smooth += length;
     });
-    return smooth > kMostlySmooth * whole;
+    return smooth > regions_.thresholds.mostly_smooth * whole;
   }
 
   [[nodiscard]] bool is_beside_free(std::uint32_t region) const {
