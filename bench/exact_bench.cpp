@@ -13,6 +13,7 @@
 #include "bench/plain_loop.hpp"
 #include "bench/pose_times.hpp"
 #include "bench/promise.hpp"
+#include "engine/base/quantile.hpp"
 #include "tests/exact/driven_insertion.hpp"
 #include "tests/exact/seated_cone.hpp"
 
@@ -30,9 +31,8 @@ struct FrameTimes {
   int iterations_max = 0;
 
   [[nodiscard]] double percentile(double share) const {
-    std::vector<double> sorted = best;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))];
+    std::vector<double> times = best;
+    return quantile(times, share);
   }
   void report(benchmark::State& state) const {
     state.counters["median_us"] = percentile(0.5);
@@ -62,7 +62,7 @@ void play(Body held, HandAt&& hand_at, int steps, FrameTimes& times, Each&& each
     if (!is_first) continue;
     times.rows += static_cast<double>(held.link.rows().rows().size()) / steps;
     times.samples += static_cast<double>(held.link.cost().samples) / steps;
-    times.slides += static_cast<double>(held.link.cost().slides) / steps;
+    times.slides += static_cast<double>(held.link.cost().closest_places) / steps;
     times.iterations_max = std::max(times.iterations_max, held.iterations);
     each(held);
   }

@@ -52,7 +52,7 @@ struct Method {
 void compare(benchmark::State& state, Scene scene, const std::vector<Pose>& poses) {
   std::vector<Method> methods;
   for (const auto& [name, hybrid] :
-       {std::pair{"off", Hybrid::off}, {"restore", Hybrid::restore}, {"blend", Hybrid::blend}}) {
+       {std::pair{"off", hybrid::off}, {"restore", hybrid::restore}, {"blend", hybrid::blend}}) {
     scene.parameters.hybrid = hybrid;
     methods.push_back({name, std::make_unique<Simulation>(scene, SimulationOptions{}), PoseTimes(poses)});
   }
@@ -79,7 +79,7 @@ void compare(benchmark::State& state, Scene scene, const std::vector<Pose>& pose
 
 /// The frames of a run in which the pin is driven into the hole and out again, with the method off.
 void BM_DrivenPin(benchmark::State& state) {
-  const Scene scene = scenes::brep_pin_in_hole(Hybrid::off);
+  const Scene scene = scenes::brep_pin_in_hole(hybrid::off);
   compare(state, scene, poses_in_contact(scene, smoke() ? 20 : 1));
 }
 BENCHMARK(BM_DrivenPin)->Iterations(200)->Unit(benchmark::kMillisecond);
@@ -87,7 +87,7 @@ BENCHMARK(BM_DrivenPin)->Iterations(200)->Unit(benchmark::kMillisecond);
 /// Arguments: voxel size [um]; 1: the implicit integrator, which wants matrices too.
 void BM_PressedPin(benchmark::State& state) {
   const double voxel_size = 1e-6 * static_cast<double>(state.range(0));
-  Scene scene = scenes::brep_pin_in_hole(Hybrid::off, voxel_size);
+  Scene scene = scenes::brep_pin_in_hole(hybrid::off, voxel_size);
   if (state.range(1) == 1) scene.parameters.integrator = Integrator::implicit;
   compare(state, scene, poses_pressed(voxel_size, smoke() ? 20 : 300));
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/pose.hpp"
+#include "engine/base/quantile.hpp"
 
 namespace verisim::bench {
 
@@ -33,11 +34,10 @@ class PoseTimes {
     round([](const Pose&) {}, run);
   }
 
-  /// Microseconds; share in [0, 1): 0.5 is the median over the poses.
+  /// Microseconds; 0.5 is the median over the poses.
   [[nodiscard]] double percentile(double share) const {
-    std::vector<double> sorted = best_;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))];
+    std::vector<double> times = best_;
+    return quantile(times, share);
   }
 
   /// Microseconds, over the poses.

@@ -11,6 +11,7 @@
 #include "bench/promise.hpp"
 #include "engine/contact/penalty.hpp"
 #include "engine/contact/query.hpp"
+#include "tests/contact/query_plainly.hpp"
 
 namespace verisim::bench {
 namespace {
@@ -58,7 +59,7 @@ void BM_Query(benchmark::State& state) {
   const GatherBound bound(s.block.voxmap);
   for (std::size_t i = 0; i < some.size(); i += 10) {
     query(s.block.voxmap, s.pin.shell, some[i], list, cost);
-    query_plainly(s.block.voxmap, s.pin.shell, some[i], plain, plain_cost);
+    test::query_plainly(s.block.voxmap, s.pin.shell, some[i], plain, plain_cost);
     if (!same(list, plain)) wrong(state, "fast and plain query disagree");
     if (bound.sum(s.pin.shell, some[i]) != bound.sum_plainly(s.pin.shell, some[i])) wrong(state, "wrong bound");
   }

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "bench/promise.hpp"
+#include "bench/sorted_entities.hpp"
 #include "engine/base/random.hpp"
 #include "engine/constraint/blend.hpp"
 #include "engine/constraint/constraint_link.hpp"
@@ -161,11 +162,16 @@ void BM_MatchSets(benchmark::State& state) {
     benchmark::DoNotOptimize(matches.data());
     benchmark::ClobberMemory();
   }
-  std::size_t plain = 0;
-  for (const Entity& x : a) {
-    for (const Entity& y : b) plain += recognize(x, y).kind != ConstraintKind::none ? 1 : 0;
+  matches.resize(found);
+  std::ranges::sort(matches, {}, [](const Match& m) { return std::pair(m.a, m.b); });
+  std::vector<Match> plain;
+  for (std::uint16_t i = 0; i < a.size(); ++i) {
+    for (std::uint16_t j = 0; j < b.size(); ++j) {
+      const ConstraintKind kind = recognize(a[i], b[j]).kind;
+      if (kind != ConstraintKind::none) plain.push_back({i, j, kind});
+    }
   }
-  if (found != plain) wrong(state, "whole sets and single pairs disagree");
+  if (plain.empty() || matches != plain) wrong(state, "whole sets and single pairs disagree");
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(a.size() * b.size()));
   state.counters["matches"] = static_cast<double>(found);
 }

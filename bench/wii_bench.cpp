@@ -17,8 +17,8 @@ std::size_t report_count() {
 
 TrackerSettings settings_of(const std::string& name) {
   TrackerSettings settings;
-  if (name == "three-led") settings.leds = LedLayout::triangle();
-  settings.X_R1R2 = {{0.5, 0, 0}, rotation_from_vector({0, -0.4, 0})};
+  settings.leds = find_tracker(name).leds;
+  settings.X_R1R2 = Pose{{0.5, 0, 0}, rotation_from_vector({0, -0.4, 0})};
   return settings;
 }
 
@@ -38,7 +38,7 @@ Run sense(const TrackerSettings& settings) {
   for (std::uint64_t k = 0; k < report_count(); ++k) {
     Situation s = trajectory("natural").at(first.report_time(k));
     run.first.push_back(first.sense(k, s));
-    s.X_WR = s.X_WR * settings.X_R1R2;
+    s.X_WR = s.X_WR * settings.X_R1R2.value();
     run.second.push_back(second.sense(k, s));
   }
   return run;
@@ -47,7 +47,7 @@ Run sense(const TrackerSettings& settings) {
 void BM_Update(benchmark::State& state, const std::string& name) {
   const TrackerSettings settings = settings_of(name);
   const Run run = sense(settings);
-  const bool stereo = name == "stereo";
+  const bool two_remotes = find_tracker(name).remotes == 2;
   double square = 0;
   int valid = 0;
   for (auto _ : state) {
@@ -57,7 +57,7 @@ void BM_Update(benchmark::State& state, const std::string& name) {
     valid = 0;
     state.ResumeTiming();
     for (std::size_t k = 0; k < run.first.size(); ++k) {
-      if (stereo) (void)tracker->update(run.second[k].t, run.second[k].channels, 1);
+      if (two_remotes) (void)tracker->update(run.second[k].t, run.second[k].channels, 1);
       const Report& report = tracker->update(run.first[k].t, run.first[k].channels);
       if (!report.valid) continue;
       ++valid;

@@ -16,8 +16,11 @@ function(verisim_core_variants name)
   foreach(library IN LISTS ARG_CORE)
     get_target_property(folder ${library} SOURCE_DIR)
     get_target_property(files ${library} SOURCES)
-    list(TRANSFORM files PREPEND ${folder}/)
-    list(APPEND sources ${files})
+    foreach(file IN LISTS files)
+      get_source_file_property(alone ${folder}/${file} TARGET_DIRECTORY ${library} SKIP_UNITY_BUILD_INCLUSION)
+      set_source_files_properties(${folder}/${file} PROPERTIES UNITY_GROUP ${library} SKIP_UNITY_BUILD_INCLUSION ${alone})
+      list(APPEND sources ${folder}/${file})
+    endforeach()
   endforeach()
 
   set(programs)
@@ -35,6 +38,7 @@ function(verisim_core_variants name)
       target_precompile_headers(${variant} PRIVATE <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <functional> <map>
                                 <memory> <string> <vector>)  # reading these is most of the time
       set_target_properties(${variant} PROPERTIES
+        UNITY_BUILD_MODE GROUP  # a library is one unit
         CXX_COMPILER_LAUNCHER "${PROJECT_SOURCE_DIR}/cmake/compile_with.sh;${compiler}"
         EXPORT_COMPILE_COMMANDS OFF  # the default build's are the ones to lint
         RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/variants)

@@ -11,6 +11,9 @@ function(verisim_test name)
                              VERISIM_SHARED_REFERENCE="${VERISIM_SHARED_REFERENCE}" VERISIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              VERISIM_BINARY_DIR="${CMAKE_BINARY_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  if(ARG_SOURCES)  # allocations.cpp and its like replace operator new, whose users must not see it
+    set_source_files_properties(${ARG_SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
                        PROPERTIES TIMEOUT 600)
 endfunction()

@@ -20,6 +20,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
+#include "engine/base/quantile.hpp"
 #include "tests/exact/driven_insertion.hpp"
 
 namespace verisim::bench {
@@ -125,10 +126,7 @@ double overlap_with_polygon(const Pose& X, double radius, double chamfer) {
 /// The pull of the hand on a peer's pin: the coupling of held_pin.hpp, evaluated at the step's start.
 struct Coupling {
   double radius;
-  [[nodiscard]] Vector3d inertia() const {
-    const double across = (3 * radius * radius + kPinLength * kPinLength) / 12;
-    return {across, across, 0.5 * radius * radius};
-  }
+  [[nodiscard]] Vector3d inertia() const { return exact::test::HeldPin::inertia(radius); }
   [[nodiscard]] Wrench pull(const Hand& hand, const Motion& m) const {
     const auto limited = [](const Vector3d& w, double most) {
       return Vector3d(w.norm() > most ? w * (most / w.norm()) : w);
@@ -311,13 +309,10 @@ Outcome run_peer(const Insertion& task, Peer& peer) {
 }
 
 void print(const char* name, const Insertion& task, Outcome outcome) {
-  std::sort(outcome.step_us.begin(), outcome.step_us.end());
-  const auto at = [&](double share) {
-    return outcome.step_us[static_cast<std::size_t>(share * static_cast<double>(outcome.step_us.size() - 1))];
-  };
   std::printf("%-38s %8.2f  %-7s %10.4f %12.3f %12.1f %9.1f %9.1f\n", name, 1e3 * task.clearance,
               outcome.bottom < -kBlockHeight / 2 ? "passes" : "stays", 1e3 * outcome.overlap,
-              outcome.overlap / task.clearance, outcome.force, at(0.5), at(0.99));
+              outcome.overlap / task.clearance, outcome.force, quantile(outcome.step_us, 0.5),
+              quantile(outcome.step_us, 0.99));
   std::fflush(stdout);
 }
 

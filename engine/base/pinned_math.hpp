@@ -18,5 +18,6 @@ namespace verisim::pinned {
 [[nodiscard]] double pow(double x, double y);
 
 inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kFullTurn = 2 * kPi;
 
 }  // namespace verisim::pinned

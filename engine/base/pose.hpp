@@ -41,6 +41,12 @@ struct Wrench {
   [[nodiscard]] Wrench operator-() const { return {-force, -torque}; }
 };
 
+/// What a wrench that acts on one body about p_on is to the body that causes it, about p_other: equal and opposite.
+[[nodiscard]] inline Wrench reaction(const Wrench& wrench, const Vector3d& p_on, const Vector3d& p_other) {
+  const Vector3d arm = p_on - p_other;
+  return {-wrench.force, -(wrench.torque + arm.cross(wrench.force))};
+}
+
 /// A velocity [m/s] of a stated point and an angular velocity [rad/s], world coordinates.
 struct Twist {
   Vector3d linear = Vector3d::Zero();

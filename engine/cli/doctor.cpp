@@ -49,7 +49,7 @@ std::int64_t sleep_lateness_ns() {
   return worst;
 }
 
-/// Can the CAD kernel's program be started and does it answer? Empty: yes; else why not.
+/// Empty if the CAD kernel's program starts and answers; else the reason why not.
 std::string cad_trouble() {
   try {
     Solid box;

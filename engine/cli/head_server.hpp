@@ -18,8 +18,8 @@ class HeadServer {
   /// Error(io) if the port is taken, Error(usage) for a name that cannot travel.
   HeadServer(const vrpn::Address& at, HeadDevices devices);
 
-  /// The channels, and the pose if the report is valid and news: VRPN has no way to say "not valid", so that what is
-  /// not valid is not sent, and a heartbeat never looks like data.
+  /// Sends the channels, and the pose if the report is valid and new. VRPN cannot mark a pose as invalid, so an invalid
+  /// pose is not sent, and a heartbeat is never mistaken for data.
   void publish(vrpn::Timestamp time, const wii::Channels& channels, const wii::Report& report);
 
   [[nodiscard]] vrpn::Server& server() { return server_; }

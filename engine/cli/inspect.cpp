@@ -25,7 +25,7 @@ struct InspectOptions {
   bool json = false;
 };
 
-/// What voxelizing a part yields, or why it cannot be.
+/// The result of voxelizing a part, or the reason why that fails.
 struct VoxelStatistics {
   std::uint32_t surface_voxels = 0;
   std::size_t memory_bytes = 0;
@@ -116,7 +116,7 @@ std::string listed(const ordered_json& counted) {
   return text.empty() ? "none known" : text;
 }
 
-void print_table(const ordered_json& report) {
+void print_inspection(const ordered_json& report) {
   for (const auto& p : report["parts"]) {
     const auto row = [](const char* name, const std::string& value) {
       std::printf("  %-16s%s\n", name, value.c_str());
@@ -164,9 +164,9 @@ void inspect(const InspectOptions& o) {
   report["parts"] = ordered_json::array();
   for (const Part& part : parts) {
     ordered_json j = json_of(part, o.density);
-    for (const std::string& question : questions_about(part)) {
-      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), question.c_str());
-      j["notes"].push_back(question);
+    for (const std::string& warning : warnings_about(part)) {
+      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), warning.c_str());
+      j["notes"].push_back(warning);
     }
     if (o.voxel) {
       const VoxelStatistics v = voxel_statistics(part, *o.voxel);
@@ -182,7 +182,7 @@ void inspect(const InspectOptions& o) {
   if (o.json)
     std::printf("%s\n", report.dump().c_str());
   else
-    print_table(report);
+    print_inspection(report);
 }
 
 }  // namespace

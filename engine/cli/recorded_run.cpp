@@ -59,13 +59,13 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
           "note: the system grants no real-time priority (CAP_SYS_NICE, or `ulimit -r 1`): other work can make "
           "periods too long\n",
           stderr);
-    run.loop = run_loop(simulation, &recorder, schema, loop);
+    run.loop = run_loop(simulation, &recorder, loop);
     run.loop.realtime_priority = priority.granted();
   }
   if (loop.progress) std::fprintf(stderr, "\r%60s\r", "");
-  run.summary = summarize(session, run.loop, options.file);
+  run.figures = figures_of(session, run.loop, options.file);
   if (run.loop.end != LoopEnd::io_failed)
-    recorder.close(to_attributes(run.summary), {{"state_hash", run.summary.state_hash}});
+    recorder.close(to_attributes(run.figures), {{"state_hash", run.figures.state_hash}});
   return run;
 }
 

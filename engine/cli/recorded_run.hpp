@@ -17,16 +17,16 @@ struct RecordOptions {
 
 struct RecordedRun {
   LoopResult loop;
-  Summary summary;
+  RunFigures figures;
 };
 
 /// Runs `session` and closes the file, also if it diverged or was interrupted. Error(io) if the file cannot be made.
 [[nodiscard]] RecordedRun record_run(Session& session, const RecordOptions& options);
 
-/// The folder of a file that is to be written, made if it is not there. Error(io).
+/// Creates the folder of a file to be written if it does not exist. Error(io).
 void make_folder_of(const std::string& file);
 
-/// The promised exit code of a loop's end.
+/// The documented exit code of a loop's end.
 [[nodiscard]] int exit_code_of(LoopEnd end);
 
 }  // namespace verisim::cli

@@ -14,7 +14,7 @@
 namespace verisim::cli {
 namespace {
 
-/// The stored columns of a run that must come out again: /state and /cost.
+/// The stored columns of a run that a replay must reproduce: /state and /cost.
 class StoredRows {
  public:
   explicit StoredRows(const RunFile& file, const Schema& simulated) : rows_(file.rows()) {

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,6 +6,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/recorded_run.hpp"
+#include "engine/cli/stop_watch.hpp"
 #include "engine/reproduce/reproductions.hpp"
 
 namespace verisim::cli {
@@ -14,11 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using reproduce::Figure;
+
 using reproduce::Reproduction;
 using reproduce::Row;
 
-struct Options {
+struct ReproduceOptions {
   std::string out = "runs/reproduce";
   std::string scenarios;
   std::vector<std::string> only;
@@ -37,7 +37,7 @@ std::string scenarios_folder() {
 }
 
 /// A run as `verisim run` makes it. Error(diverged, io, interrupted) if it did not come to its end.
-reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::RunRequest& request) {
+reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::RunRequest& request) {
   ScenarioOptions options;
   options.path = (fs::path(folder) / (request.scenario + ".lua")).string();
   options.sets = request.sets;
@@ -49,33 +49,12 @@ reproduce::RunFigures run_scenario(const std::string& folder, const reproduce::R
       record_run(session, {.file = request.file, .paced = request.paced, .empty_block = request.empty_block});
   if (run.loop.end != LoopEnd::done)
     fail(static_cast<ErrorKind>(exit_code_of(run.loop.end)), "{}: {}", request.file,
-         run.loop.error.empty() ? run.summary.end : run.loop.error);
-  const Summary& s = run.summary;
-  reproduce::RunFigures figures{.run_file = s.run_file,
-                                .outcome = s.outcome,
-                                .frames = s.frames,
-                                .collision_frames = s.collision_frames,
-                                .overruns = s.overruns,
-                                .collisions = s.collisions,
-                                .cache_hits = s.cache_hits,
-                                .cache_misses = s.cache_misses,
-                                .null_misses = s.null_misses,
-                                .simulated_s = s.simulated_s,
-                                .wall_s = s.wall_s,
-                                .realtime_priority = s.realtime_priority,
-                                .frame_ns = std::move(run.loop.frame_ns),
-                                .collision_frame_ns = std::move(run.loop.collision_frame_ns),
-                                .measures = {},
-                                .block_overruns = std::move(run.loop.block_overruns),
-                                .empty_block_overruns = std::move(run.loop.empty_block_overruns),
-                                .force_max = s.force_max,
-                                .penetration_max = s.penetration_max,
-                                .state_hash = s.state_hash};
-  for (const Measure& m : s.measures) figures.measures.emplace_back(m.name, m.value);
-  return figures;
+         run.loop.error.empty() ? run.figures.end : run.loop.error);
+  return {run.figures, std::move(run.loop.frame_ns), std::move(run.loop.collision_frame_ns),
+          std::move(run.loop.block_overruns), std::move(run.loop.empty_block_overruns)};
 }
 
-ordered_json json_of(const Figure& figure) {
+ordered_json json_of(const reproduce::Figure& figure) {
   if (const auto* words = std::get_if<std::string>(&figure)) return *words;
   return std::get<double>(figure);
 }
@@ -95,7 +74,7 @@ ordered_json json_of(const Row& row) {
 }
 
 /// Every row, and every file that one of them comes from, once.
-std::string to_json(const std::vector<Row>& rows) {
+std::string json_of_rows(const std::vector<Row>& rows) {
   ordered_json j = {{"rows", ordered_json::array()}, {"runs", ordered_json::array()}};
   for (const Row& row : rows) {
     j["rows"].push_back(json_of(row));
@@ -105,12 +84,11 @@ std::string to_json(const std::vector<Row>& rows) {
   return j.dump();
 }
 
-bool is_wanted(const Options& o, const Reproduction& r) {
+bool is_wanted(const ReproduceOptions& o, const Reproduction& r) {
   return o.only.empty() || std::find(o.only.begin(), o.only.end(), r.id) != o.only.end();
 }
 
-void run_reproduce(const Options& o) {
-  using Clock = std::chrono::steady_clock;
+void run_reproduce(const ReproduceOptions& o) {
   reproduce::Workshop workshop{o.quick, o.out, {}};
   const std::string scenarios = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
   workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request); };
@@ -119,11 +97,11 @@ void run_reproduce(const Options& o) {
   for (const Reproduction& r : reproduce::reproductions()) {
     if (!is_wanted(o, r)) continue;
     if (!o.quiet) std::fprintf(stderr, "%-4s %-40s ", r.id, r.what);
-    const auto begin = Clock::now();
+    const StopWatch watch;
     for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
-    if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", std::chrono::duration<double>(Clock::now() - begin).count());
+    if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", watch.seconds());
   }
-  std::printf("%s%s", o.json ? to_json(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
+  std::printf("%s%s", o.json ? json_of_rows(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
 }
 
 std::vector<std::string> ids() {
@@ -136,7 +114,7 @@ std::vector<std::string> ids() {
 
 void add_reproduce(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("reproduce", "The dissertation's figures, measured again side by side");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReproduceOptions>();
   command->add_option("-o,--out", o->out, "Folder for run files and tables")->capture_default_str();
   command->add_option("--only", o->only, "Only these (repeatable)")->take_all()->check(CLI::IsMember(ids()));
   command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");

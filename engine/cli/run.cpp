@@ -31,9 +31,9 @@ int run(const std::string& scenario, const SimulateOptions& o) {
       record_run(session, {.file = file, .paced = o.realtime, .embed = !o.no_embed, .progress = !o.quiet});
   if (!run.loop.error.empty()) std::fprintf(stderr, "error: %s\n", run.loop.error.c_str());
   if (o.json)
-    std::printf("%s\n", to_json(run.summary).c_str());
+    std::printf("%s\n", to_json(run.figures).c_str());
   else if (!o.quiet)
-    std::printf("%s", to_table(run.summary).c_str());
+    std::printf("%s", to_table(run.figures).c_str());
   return exit_code_of(run.loop.end);
 }
 

@@ -29,39 +29,46 @@ std::uint32_t clamped_ns(Clock::duration d) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(ns, 0, 0xffffffffLL));
 }
 
-/// What /timing holds of one frame, in the order of its columns.
+/// The wall clock of one frame.
 struct Timing {
-  std::uint32_t frame_ns;
-  std::array<std::uint32_t, kStageNames.size()> stage_ns;
-  std::uint32_t period_ns;
-  std::uint8_t overrun;
-
-  void write(std::byte* at) const {
-    const auto put = [&](const auto& value) {
-      std::memcpy(at, &value, sizeof value);
-      at += sizeof value;
-    };
-    put(frame_ns);
-    put(stage_ns);
-    put(period_ns);
-    put(overrun);
-  }
+  std::uint32_t frame_ns = 0;
+  StageTimes stage_ns{};
+  std::uint32_t period_ns = 0;
+  bool overrun = false;
 };
 
-std::size_t timing_offset(const Schema& schema) {
-  for (const Column& column : schema.columns())
-    if (column.path == "/timing/frame_ns") return column.offset;
-  VERISIM_ASSERT(!"the schema has timing columns");
-  return 0;
+Columns declare(const Timing& timing) {
+  Columns columns;
+  std::string stages;
+  for (const char* name : kStageNames) stages += (stages.empty() ? "" : ", ") + std::string(name);
+  columns.add("/timing/frame_ns", "ns", "wall clock of computing the frame", [&timing] { return timing.frame_ns; });
+  columns.add("/timing/stage_ns", "ns", "wall clock of its stages: " + stages, [&timing] { return timing.stage_ns; });
+  columns.add("/timing/period_ns", "ns", "start of the frame before to the start of this one",
+              [&timing] { return timing.period_ns; });
+  columns.add("/timing/overrun", "1", "1: period over 1.5 dt (free-running: compute time over 1.5 dt)",
+              [&timing] { return timing.overrun; });
+  return columns;
 }
 
-void record(Simulation& simulation, Recorder& recorder, std::size_t offset, const Timing& timing) {
-  const std::span<std::byte> row = recorder.begin_row();
-  simulation.write_row(row.data());
-  timing.write(row.data() + offset);
-  recorder.end_row();
-  for (const Event& event : simulation.events()) recorder.event(event.time, event.kind, event.text);
-}
+/// Hands rows over to the recorder: the simulation's, then the wall clock.
+class RowSink {
+ public:
+  RowSink(const Simulation& simulation, Recorder* recorder, const Timing& timing)
+      : simulation_(simulation), recorder_(recorder), timing_(declare(timing)) {}
+  void take() {
+    if (recorder_ == nullptr) return;
+    const std::span<std::byte> row = recorder_->begin_row();
+    simulation_.write_row(row.data());
+    timing_.put_other(row.data() + row.size() - timing_.other_bytes());
+    recorder_->end_row();
+    for (const Event& event : simulation_.events()) recorder_->event(event.time, event.kind, event.text);
+  }
+
+ private:
+  const Simulation& simulation_;
+  Recorder* recorder_;
+  Columns timing_;
+};
 
 /// The wall clock's schedule: when each frame starts if the loop is paced, and which periods were too long.
 class Pace {
@@ -88,7 +95,7 @@ class Pace {
   Clock::duration period_{};
 };
 
-/// Counts overruns block by block, and lets an empty block follow each.
+/// Counts overruns block by block, and runs an empty block after each.
 class Blocks {
  public:
   Blocks(const LoopOptions& options, LoopResult& result)
@@ -126,20 +133,17 @@ bool was_interrupted() {
 }
 
 void add_timing_columns(Schema& schema) {
-  std::string stages;
-  for (const char* name : kStageNames) stages += (stages.empty() ? "" : ", ") + std::string(name);
-  schema.add({"/timing/frame_ns", Dtype::u32, 1, "ns", "wall clock of computing the frame", 0, {}});
-  schema.add({"/timing/stage_ns", Dtype::u32, kStageNames.size(), "ns", "wall clock of its stages: " + stages, 0, {}});
-  schema.add({"/timing/period_ns", Dtype::u32, 1, "ns", "start of the frame before to the start of this one", 0, {}});
-  schema.add(
-      {"/timing/overrun", Dtype::u8, 1, "1", "1: period over 1.5 dt (free-running: compute time over 1.5 dt)", 0, {}});
+  const Timing none;
+  const Columns columns = declare(none);
+  for (const Column& column : columns.other()) schema.add(column);
 }
 
-LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema, const LoopOptions& options) {
+LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOptions& options) {
   LoopResult result;
   result.frame_ns.reserve(options.frames);
   result.collision_frame_ns.reserve(options.frames);
-  const std::size_t offset = recorder != nullptr ? timing_offset(schema) : 0;
+  Timing timing;
+  RowSink rows(simulation, recorder, timing);
   Blocks blocks(options, result);
   const Clock::time_point start = Clock::now();
   Clock::time_point last_progress = start;
@@ -149,12 +153,12 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& sc
       const Clock::time_point begin = pace.wait();
       simulation.step();
       const Clock::time_point end = Clock::now();
-      const Timing timing{clamped_ns(end - begin), simulation.stage_ns(), clamped_ns(pace.period()),
-                          static_cast<std::uint8_t>(pace.too_long(options.paced ? pace.period() : end - begin))};
-      result.overruns += timing.overrun;
+      timing = {clamped_ns(end - begin), simulation.stage_ns(), clamped_ns(pace.period()),
+                pace.too_long(options.paced ? pace.period() : end - begin)};
+      result.overruns += timing.overrun ? 1 : 0;
       result.frame_ns.push_back(timing.frame_ns);
       if (simulation.cost().contacts > 0) result.collision_frame_ns.push_back(timing.frame_ns);
-      if (recorder != nullptr) record(simulation, *recorder, offset, timing);
+      rows.take();
       simulation.clear_events();
       if (options.progress && end - last_progress > std::chrono::milliseconds(200)) {
         options.progress(i + 1);
@@ -171,14 +175,6 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& sc
   }
   result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   return result;
-}
-
-std::uint32_t quantile(std::vector<std::uint32_t>& times, double p) {
-  if (times.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(std::ceil(p * static_cast<double>(times.size())));
-  const std::size_t index = std::min(times.size() - 1, rank == 0 ? 0 : rank - 1);
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(index), times.end());
-  return times[index];
 }
 
 }  // namespace verisim::cli

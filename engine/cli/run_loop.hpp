@@ -13,10 +13,10 @@ namespace verisim::cli {
 struct LoopOptions {
   std::uint64_t frames = 0;
   bool paced = false;                           ///< wait for the wall clock before each frame
-  std::uint64_t empty_block = 0;                ///< paced, > 0: after every so many frames as many of a loop that does
-                                                ///< nothing, to see what the machine alone does to periods
+  std::uint64_t empty_block = 0;                ///< paced, > 0: after each block of so many frames an empty loop of as
+                                                ///< many periods runs, to measure the jitter of the machine alone
   std::function<bool()> finished;               ///< asked after every frame: the scenario may end early
-  std::function<void(std::uint64_t)> progress;  ///< told frames done, about five times a second; may be empty
+  std::function<void(std::uint64_t)> progress;  ///< receives the frames done, about five times a second; may be empty
 };
 
 enum class LoopEnd { done, interrupted, diverged, io_failed };
@@ -25,8 +25,8 @@ struct LoopResult {
   LoopEnd end = LoopEnd::done;
   std::string error;  ///< for diverged and io_failed
   std::uint64_t overruns = 0;
-  std::vector<std::uint32_t> block_overruns;        ///< of each whole block of frames, if there are empty ones between
-  std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block behind each
+  std::vector<std::uint32_t> block_overruns;        ///< of each whole block of frames, if empty blocks are measured
+  std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block after each
   std::vector<std::uint32_t> frame_ns;              ///< of every frame
   std::vector<std::uint32_t> collision_frame_ns;    ///< of the frames with contact
   bool realtime_priority = false;                   ///< whether the thread had it
@@ -37,16 +37,12 @@ struct LoopResult {
 void add_timing_columns(Schema& schema);
 
 /// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may
-/// be null. `schema` is the simulation's, then the timing columns. The loop itself allocates nothing.
-[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const Schema& schema,
-                                  const LoopOptions& options);
+/// be null; its schema is the simulation's, then the timing columns. The loop itself allocates nothing.
+[[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOptions& options);
 
 /// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
 void catch_interrupts();
-/// Whether one has asked since. For other loops than run_loop.
+/// True if a signal has asked to stop. For loops other than run_loop.
 [[nodiscard]] bool was_interrupted();
-
-/// The p-quantile (0 to 1) of some times, nearest rank; 0 of none. `times` is reordered.
-[[nodiscard]] std::uint32_t quantile(std::vector<std::uint32_t>& times, double p);
 
 }  // namespace verisim::cli

@@ -1,6 +1,5 @@
 #include "engine/cli/session.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -8,13 +7,14 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/cli/stop_watch.hpp"
 
 namespace verisim::cli {
 
 using nlohmann::json;
 
 Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet) {
-  const auto start = std::chrono::steady_clock::now();
+  const StopWatch watch;
   Session session;
   session.options = options;
   session.inputs = std::move(inputs);
@@ -24,7 +24,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
   std::vector<std::string> notices = session.scenario->notices();
   for (const BodyDescription& body : scene.bodies)
     for (const Part& part : body.parts)
-      for (const std::string& question : questions_about(part)) notices.push_back("'" + body.name + "': " + question);
+      for (const std::string& warning : warnings_about(part)) notices.push_back("'" + body.name + "': " + warning);
   for (const auto& device : scene.devices)
     if (!device->driven())
       notices.push_back("device '" + device->name() +
@@ -40,7 +40,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
     session.simulation->add_event("warning", notice);
   }
   session.scenario->attach(*session.simulation);
-  session.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  session.load_s = watch.seconds();
   return session;
 }
 

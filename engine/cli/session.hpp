@@ -1,4 +1,5 @@
-// From a scenario to a simulation that is ready to step, and to the header of its run file. Used by run and replay.
+// A session: from a scenario to a simulation that is ready to step, and to the header of its run file. Used by run and
+// replay.
 #pragma once
 
 #include <memory>
@@ -26,10 +27,10 @@ struct Session {
 /// The files and folders that the command line names, which a scenario may read wherever they lie.
 [[nodiscard]] std::vector<std::string> named_paths(const ScenarioOptions& options);
 
-/// What the run file says before the first frame, with everything that a replay needs.
+/// The run file's data before the first frame, with all that a replay needs.
 [[nodiscard]] RunHeader header_of(const Session& session, bool embed);
 
-/// The invocation as replay needs it (sets, binds, seed, duration), as JSON, and back.
+/// The invocation for a replay (sets, binds, seed, duration) as JSON, and back.
 [[nodiscard]] std::string invocation_json(const ScenarioOptions& options);
 [[nodiscard]] ScenarioOptions options_from_header(const RunHeader& header);
 

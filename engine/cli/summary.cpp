@@ -4,16 +4,16 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/hash.hpp"
+#include "engine/base/quantile.hpp"
 
 namespace verisim::cli {
 namespace {
 
 using nlohmann::ordered_json;
 
-Summary::Times times_of(std::vector<std::uint32_t>& ns) {
-  Summary::Times times{quantile(ns, 0.5), quantile(ns, 0.99), 0};
-  times.max = quantile(ns, 1);
-  return times;
+RunFigures::Times times_of(std::vector<std::uint32_t>& ns) {
+  if (ns.empty()) return {};
+  return {quantile(ns, 0.5), quantile(ns, 0.99), quantile(ns, 1)};
 }
 
 const char* name_of(LoopEnd end) {
@@ -30,19 +30,24 @@ const char* name_of(LoopEnd end) {
   return "";
 }
 
-double realtime_factor(const Summary& s) {
-  return s.wall_s > 0 ? s.simulated_s / s.wall_s : 0;
-}
-
-ordered_json json_of(const Summary::Times& t) {
-  return {{"p50", t.p50}, {"p99", t.p99}, {"max", t.max}};
+ordered_json json_of_figure(const RunFigure::Value& value) {
+  if (const auto* times = std::get_if<RunFigures::Times>(&value))
+    return {{"p50", times->p50}, {"p99", times->p99}, {"max", times->max}};
+  return std::visit(
+      [](const auto& v) -> ordered_json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, RunFigures::Times>)
+          return {};
+        else
+          return v;
+      },
+      value);
 }
 
 }  // namespace
 
-Summary summarize(const Session& session, LoopResult& loop, const std::string& run_file) {
+RunFigures figures_of(const Session& session, LoopResult& loop, const std::string& run_file) {
   const Simulation& simulation = *session.simulation;
-  Summary s;
+  RunFigures s;
   s.scenario = std::filesystem::path(session.options.path).filename().string();
   s.run_file = run_file;
   s.outcome = session.scenario->outcome();
@@ -52,7 +57,7 @@ Summary summarize(const Session& session, LoopResult& loop, const std::string& r
   s.collision_frames = simulation.collision_frames();
   s.overruns = loop.overruns;
   s.realtime_priority = loop.realtime_priority;
-  const Simulation::Totals& totals = simulation.totals();
+  const Totals& totals = simulation.totals();
   s.collisions = totals.contacts;
   s.cache_hits = totals.cache_hits;
   s.cache_misses = totals.cache_misses;
@@ -71,91 +76,61 @@ Summary summarize(const Session& session, LoopResult& loop, const std::string& r
   return s;
 }
 
-std::string to_json(const Summary& s) {
+std::string to_json(const RunFigures& run) {
   ordered_json j;
-  j["scenario"] = s.scenario;
-  j["run_file"] = s.run_file;
-  j["frames"] = s.frames;
-  j["simulated_s"] = s.simulated_s;
-  j["wall_s"] = s.wall_s;
-  j["load_s"] = s.load_s;
-  j["realtime_factor"] = realtime_factor(s);
-  j["collision_frames"] = s.collision_frames;
-  j["overruns"] = s.overruns;
-  j["realtime_priority"] = s.realtime_priority;
-  j["collisions"] = s.collisions;
-  j["cache_hits"] = s.cache_hits;
-  j["cache_misses"] = s.cache_misses;
-  j["null_misses"] = s.null_misses;
+  for (const RunFigure& figure : run_figures()) j[figure.name] = json_of_figure(figure.value(run));
   j["constraints"] = ordered_json::object();
-  for (const auto& [name, frames] : s.constraints) j["constraints"][name] = frames;
-  j["max_force_N"] = s.force_max;
-  j["max_penetration_m"] = s.penetration_max;
-  j["outcome"] = s.outcome;
-  j["end"] = s.end;
-  j["state_hash"] = s.state_hash;
-  j["frame_ns"] = json_of(s.frame_ns);
-  j["collision_frame_ns"] = json_of(s.collision_frame_ns);
+  for (const auto& [name, frames] : run.constraints) j["constraints"][name] = frames;
   j["measures"] = ordered_json::object();
-  for (const Measure& m : s.measures) j["measures"][m.name] = {{"value", m.value}, {"unit", m.unit}};
+  for (const Measure& m : run.measures) j["measures"][m.name] = {{"value", m.value}, {"unit", m.unit}};
   return j.dump();
 }
 
-std::string to_table(const Summary& s) {
+std::string to_table(const RunFigures& run) {
   std::string text;
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<22}{}\n", name, value);
   };
-  const auto times = [](const Summary::Times& t) {
+  const auto times = [](const RunFigures::Times& t) {
     return fmt::format("{:.1f} us median, {:.1f} us 99 %, {:.1f} us max", t.p50 / 1e3, t.p99 / 1e3, t.max / 1e3);
   };
-  text += fmt::format("{}: {}\n", s.scenario, s.outcome.empty() ? s.end : s.outcome);
-  row("frames", fmt::format("{} ({:.3f} s simulated in {:.3f} s, {:.0f} x real time; loaded in {:.2f} s)", s.frames,
-                            s.simulated_s, s.wall_s, realtime_factor(s), s.load_s));
-  row("with contact", fmt::format("{}", s.collision_frames));
-  for (const auto& [name, frames] : s.constraints) row(name.c_str(), fmt::format("constraint in {} frames", frames));
-  if (s.cache_hits + s.cache_misses > 0)
-    row("look-ups", fmt::format("{} memoized, {} recognized ({} of them to no constraint)", s.cache_hits,
-                                s.cache_misses, s.null_misses));
-  row("overruns", fmt::format("{}{}", s.overruns, s.realtime_priority ? " (with real-time priority)" : ""));
-  row("frame", times(s.frame_ns));
-  if (s.collision_frames > 0) row("frame with contact", times(s.collision_frame_ns));
-  row("largest force", fmt::format("{:.3g} N", s.force_max));
-  row("deepest penetration", fmt::format("{:.3g} mm", s.penetration_max * 1e3));
-  for (const Measure& m : s.measures) row(m.name.c_str(), fmt::format("{:.6g} {}", m.value, m.unit));
-  row("state hash", s.state_hash);
-  row("run file", s.run_file);
+  text += fmt::format("{}: {}\n", run.scenario, run.outcome.empty() ? run.end : run.outcome);
+  row("frames", fmt::format("{} ({:.3f} s simulated in {:.3f} s, {:.0f} x real time; loaded in {:.2f} s)", run.frames,
+                            run.simulated_s, run.wall_s, run.realtime_factor(), run.load_s));
+  row("with contact", fmt::format("{}", run.collision_frames));
+  for (const auto& [name, frames] : run.constraints) row(name.c_str(), fmt::format("constraint in {} frames", frames));
+  if (run.cache_hits + run.cache_misses > 0)
+    row("look-ups", fmt::format("{} memoized, {} recognized ({} of them to no constraint)", run.cache_hits,
+                                run.cache_misses, run.null_misses));
+  row("overruns", fmt::format("{}{}", run.overruns, run.realtime_priority ? " (with real-time priority)" : ""));
+  row("frame", times(run.frame_ns));
+  if (run.collision_frames > 0) row("frame with contact", times(run.collision_frame_ns));
+  row("largest force", fmt::format("{:.3g} N", run.force_max));
+  row("deepest penetration", fmt::format("{:.3g} mm", run.penetration_max * 1e3));
+  for (const Measure& m : run.measures) row(m.name.c_str(), fmt::format("{:.6g} {}", m.value, m.unit));
+  row("state hash", run.state_hash);
+  row("run file", run.run_file);
   return text;
 }
 
-std::map<std::string, Attribute> to_attributes(const Summary& s) {
+std::map<std::string, Attribute> to_attributes(const RunFigures& run) {
   const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
-  std::map<std::string, Attribute> a{{"scenario", s.scenario},
-                                     {"frames", count(s.frames)},
-                                     {"simulated_s", s.simulated_s},
-                                     {"wall_s", s.wall_s},
-                                     {"load_s", s.load_s},
-                                     {"realtime_factor", realtime_factor(s)},
-                                     {"collision_frames", count(s.collision_frames)},
-                                     {"overruns", count(s.overruns)},
-                                     {"cache_hits", count(s.cache_hits)},
-                                     {"cache_misses", count(s.cache_misses)},
-                                     {"null_misses", count(s.null_misses)},
-                                     {"collisions", count(s.collisions)},
-                                     {"max_force_N", s.force_max},
-                                     {"max_penetration_m", s.penetration_max},
-                                     {"outcome", s.outcome},
-                                     {"end", s.end},
-                                     {"state_hash", s.state_hash},
-                                     {"json", to_json(s)}};
-  const auto add_times = [&](const std::string& name, const Summary::Times& t) {
-    a[name + "_p50"] = count(t.p50);
-    a[name + "_p99"] = count(t.p99);
-    a[name + "_max"] = count(t.max);
+  std::map<std::string, Attribute> a{{"json", to_json(run)}};
+  const auto add = [&](const std::string& name, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, RunFigures::Times>) {
+      a[name + "_p50"] = count(value.p50);
+      a[name + "_p99"] = count(value.p99);
+      a[name + "_max"] = count(value.max);
+    } else if constexpr (std::is_same_v<Value, std::uint64_t> || std::is_same_v<Value, bool>) {
+      a[name] = count(value);
+    } else {
+      a[name] = value;
+    }
   };
-  add_times("frame_ns", s.frame_ns);
-  add_times("collision_frame_ns", s.collision_frame_ns);
-  for (const Measure& m : s.measures) a["measure " + m.name + " [" + m.unit + "]"] = m.value;
+  for (const RunFigure& figure : run_figures())
+    std::visit([&](const auto& value) { add(figure.name, value); }, figure.value(run));
+  for (const Measure& m : run.measures) a["measure " + m.name + " [" + m.unit + "]"] = m.value;
   return a;
 }
 

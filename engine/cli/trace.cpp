@@ -54,7 +54,7 @@ ordered_json describe(const Trace& trace) {
   return j;
 }
 
-void print_table(const ordered_json& j) {
+void print_trace_info(const ordered_json& j) {
   for (const auto& [name, value] : j.items()) {
     if (name == "columns") continue;
     std::printf("%-20s%s\n", name.c_str(), (value.is_string() ? value.get<std::string>() : value.dump()).c_str());
@@ -82,7 +82,7 @@ void add_info(CLI::App& trace, int& exit_code) {
     if (o->json)
       std::printf("%s\n", report.dump().c_str());
     else
-      print_table(report);
+      print_trace_info(report);
     exit_code = 0;
   });
 }
@@ -92,7 +92,6 @@ void add_convert(CLI::App& trace, int& exit_code) {
     std::string in, out;
     std::vector<std::string> maps;
     ConvertOptions convert;
-    bool passthrough = false;
     TraceLimits limits;
   };
   auto* command = trace.add_subcommand("convert", "A foreign CSV, or a trace in the other format, to a trace");

@@ -1,4 +1,4 @@
-// What the wii commands share.
+// Functions common to the wii commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,8 +17,8 @@ void add_wii_listen(CLI::App& wii_command, int& exit_code);
 
 /// A wii trace that the command line names. Error(input).
 [[nodiscard]] wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits);
-/// All that take one trace: all but stereo.
-[[nodiscard]] std::vector<std::string> trackers_of_one_remote();
+/// The trackers that need `remotes` remotes: as many traces.
+[[nodiscard]] std::vector<std::string> trackers_of(int remotes);
 
 /// The columns of a CSV of poses (INTERFACES section 1), and one row of it, numbers as short as reads back to the bit.
 inline constexpr const char* kPoseHeader = "t,valid,px,py,pz,qx,qy,qz,qw,cpx,cpy,cpz,crx,cry,crz\n";

@@ -7,10 +7,11 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/run_loop.hpp"
+#include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/geometry/write_file.hpp"
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
 
@@ -43,8 +44,8 @@ class ChannelRecord {
     trace_.columns = wii_trace_columns();
   }
 
-  /// A report with fewer than 15 channels, one that is not finite, or one that is not later than the one before has no
-  /// place in a trace: it is counted and left out.
+  /// Adds a report to the trace. A report is counted and left out if it has fewer than 15 channels, is not finite, or
+  /// is not later than the last one.
   void add(const vrpn::Received& message) {
     const auto analog = vrpn::decode_analog(message.payload);
     if (trace_.values.empty()) begin_ = message.time;
@@ -138,7 +139,7 @@ void add_wii_listen(CLI::App& wii_command, int& exit_code) {
       ->required();
   command->add_option("-o,--out", o->out, "Wii trace to write, .csv or .h5");
   command->add_option("--poses", o->poses, "CSV of a tracker's poses, as wii track writes it");
-  command->add_option("--tracker", o->tracker, "Which tracker")->check(CLI::IsMember(trackers_of_one_remote()));
+  command->add_option("--tracker", o->tracker, "Which tracker")->check(CLI::IsMember(trackers_of(1)));
   command->add_option("--leds", o->leds, "LEDs of the glasses, as in a trace: 'x y z; x y z'");
   command->add_option("--fov", o->fov, "Field of view of that remote, degrees")->expected(2);
   command->add_option("--rate", o->rate, "Nominal rate to write into the trace, 1/s")->check(CLI::PositiveNumber);

@@ -7,6 +7,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/head_server.hpp"
 #include "engine/cli/run_loop.hpp"
+#include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/wii/validate.hpp"
@@ -36,10 +37,8 @@ std::unique_ptr<wii::ReportSource> source_of(const ServeCommand& c) {
   if (c.trace.empty() == c.trajectory.empty())
     fail(ErrorKind::usage, "wii serve: give either --trace FILE or --trajectory NAME");
   if (!c.trace.empty()) return wii::make_recorded_source(read_wii_file(c.trace, c.limits));
-  return wii::make_virtual_source({.trajectory = c.trajectory,
-                                   .sensor = c.sensor,
-                                   .leds = c.tracker == "three-led" ? wii::LedLayout::triangle() : wii::LedLayout{},
-                                   .seed = c.seed});
+  return wii::make_virtual_source(
+      {.trajectory = c.trajectory, .sensor = c.sensor, .leds = wii::find_tracker(c.tracker).leds, .seed = c.seed});
 }
 
 void tell(vrpn::Server& server, bool quiet) {
@@ -80,7 +79,7 @@ void wait_for_client(HeadServer& head, bool quiet) {
   }
 }
 
-/// Lets clients take what is queued for them.
+/// Lets clients receive their queued messages.
 void say_farewell(HeadServer& head, bool quiet) {
   const StopWatch watch;
   do head.server().turn(wire_time(), kIdleWait);
@@ -123,7 +122,7 @@ void add_wii_serve(CLI::App& wii_command, int& exit_code) {
   command->add_option("--trace", o->trace, "Wii trace to play at its own pace, CSV or HDF5");
   command->add_option("--trajectory", o->trajectory, "Or a virtual remote, live: a trajectory of wii validate");
   command->add_option("--sensor", o->sensor, "What that remote is like (see wii validate)");
-  command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(trackers_of_one_remote()));
+  command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(trackers_of(1)));
   command->add_option("--device", o->devices.tracker, "Name of the tracker device");
   command->add_option("--channels", o->devices.analog, "Name of the analog device");
   command->add_option("--host", o->host, "Address to listen at (0.0.0.0: everyone may connect)");

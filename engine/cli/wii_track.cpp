@@ -3,7 +3,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/geometry/write_file.hpp"
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
 
 namespace verisim::cli {
 
@@ -12,9 +12,10 @@ wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits)
   return read_wii_recording(inputs, file, limits);
 }
 
-std::vector<std::string> trackers_of_one_remote() {
-  std::vector<std::string> names = wii::tracker_names();
-  std::erase(names, "stereo");
+std::vector<std::string> trackers_of(int remotes) {
+  std::vector<std::string> names;
+  for (const wii::TrackerEntry& entry : wii::trackers())
+    if (entry.remotes == remotes) names.emplace_back(entry.name);
   return names;
 }
 
@@ -53,22 +54,26 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
       wii_command.add_subcommand("track", "One tracker over one trace (or two): a CSV with a row per sample");
   auto o = std::make_shared<Options>();
   command->add_option("TRACE", o->trace, "Wii trace, CSV or HDF5")->required();
-  command->add_option("--second", o->second, "Trace of the second remote, for stereo; both say '# remote_pose:'");
+  const std::string of_two = fmt::format("{}", fmt::join(trackers_of(2), " or "));
+  command->add_option("--second", o->second,
+                      fmt::format("Trace of the second remote, for {}; both say '# remote_pose:'", of_two));
   command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(wii::tracker_names()));
   command->add_option("-o,--out", o->out, "CSV to write")->required();
   command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s");
   command->add_flag("--resort", o->limits.resort, "Sort the samples by time first");
   command->footer("Example: verisim wii track head.csv --tracker scaat -o pose.csv");
   command->callback([=, &exit_code] {
-    if (o->second.empty() == (o->tracker == "stereo"))
-      fail(ErrorKind::usage, "wii track: --second and --tracker stereo belong together; {}",
-           o->second.empty() ? "name the second remote's trace" : "choose --tracker stereo");
+    const bool needs_second = wii::find_tracker(o->tracker).remotes == 2;
+    if (o->second.empty() == needs_second)
+      fail(ErrorKind::usage, "wii track: --second and --tracker {} belong together; {}", of_two,
+           needs_second ? "name the second remote's trace" : "choose --tracker " + of_two);
     const wii::Recording first = read_wii_file(o->trace, o->limits);
     wii::Recording second;
     if (!o->second.empty()) {
       second = read_wii_file(o->second, o->limits);
       if (!second.placed)
-        fail(ErrorKind::input, "{}: no '# remote_pose:'; stereo must know where the second remote is", o->second);
+        fail(ErrorKind::input, "{}: no '# remote_pose:'; {} must know where the second remote is", o->second,
+             o->tracker);
     }
     write_file(o->out, track(first, o->second.empty() ? nullptr : &second, o->tracker));
     exit_code = 0;

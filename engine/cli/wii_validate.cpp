@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct ValidateOptions {
   wii::ValidationOptions validation;
   std::vector<std::string> motions;
   std::string out;
@@ -90,7 +90,7 @@ wii::Trajectory read_motion(const std::string& file) {
 
 /// FILE.csv with every figure, FILE.svg with all of them at a glance, and FILE-TRAJECTORY-SENSOR.svg over time for each
 /// trajectory that was asked for by name.
-void write_files(const Options& o, const std::vector<wii::ValidationRow>& rows) {
+void write_files(const ValidateOptions& o, const std::vector<wii::ValidationRow>& rows) {
   write_file(o.out, wii::csv_of(rows));
   const std::string stem = fs::path(o.out).replace_extension().string();
   write_file(stem + ".svg", wii::overview_plot(rows));
@@ -115,7 +115,7 @@ void write_files(const Options& o, const std::vector<wii::ValidationRow>& rows) 
   }
 }
 
-void run_validate(Options& o) {
+void run_validate(ValidateOptions& o) {
   for (const std::string& file : o.motions) o.validation.recorded.push_back(read_motion(file));
   const std::vector<wii::ValidationRow> rows = wii::validate(o.validation);
   if (!o.out.empty()) write_files(o, rows);
@@ -133,7 +133,7 @@ void run_validate(Options& o) {
 
 void add_wii_validate(CLI::App& wii_command, int& exit_code) {
   auto* command = wii_command.add_subcommand("validate", "Every tracker against the virtual Wii Remote, as a table");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ValidateOptions>();
   wii::ValidationOptions& v = o->validation;
   command->add_option("--tracker", v.trackers, "Only these (repeatable); NAME/3: with three LEDs")
       ->take_all()

@@ -1,5 +1,7 @@
 #include "engine/cli/wire_clock.hpp"
 
+#include <chrono>
+
 namespace verisim::cli {
 namespace {
 
@@ -26,12 +28,6 @@ vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds) {
 
 std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end) {
   return total(end) - total(begin);
-}
-
-StopWatch::StopWatch() : begin_(std::chrono::steady_clock::now()) {}
-
-double StopWatch::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
 }  // namespace verisim::cli

@@ -1,28 +1,17 @@
 // The wall clock for programs on a network.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
 #include "engine/vrpn/message.hpp"
 
 namespace verisim::cli {
 
-/// What message headers say: time since 1970.
+/// Time since 1970, as message headers hold it.
 [[nodiscard]] vrpn::Timestamp wire_time();
-/// `begin` and a number of microseconds more.
+/// `begin` plus a number of microseconds.
 [[nodiscard]] vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds);
 /// From `begin` to `end`.
 [[nodiscard]] std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end);
-
-/// Counts seconds from its making, whatever happens to the calendar.
-class StopWatch {
- public:
-  StopWatch();
-  [[nodiscard]] double seconds() const;
-
- private:
-  std::chrono::steady_clock::time_point begin_;
-};
 
 }  // namespace verisim::cli

@@ -10,11 +10,11 @@
 namespace verisim {
 namespace {
 
-/// Of a fit: a clearance of zero would divide by zero in eq. 8.2. A micrometre is the finest that fits are made to.
-constexpr double kClearanceLeast = 1e-6;
+/// m, smallest clearance in eq. 8.2, which would else divide by zero. The finest fits are made to a micrometre.
+constexpr double kClearanceMin = 1e-6;
 
-/// Of a voxel: by how much a pin that is not yet in its hole may miss it and still be guided in (alignment.hpp).
-constexpr double kGuided = 0.1;
+/// Of a voxel: largest x at which a pin before its hole still has alpha > 0 without engagement (alignment.hpp).
+constexpr double kGuidedX = 0.1;
 
 struct AxisInA {
   Vector3d point, direction;
@@ -32,17 +32,17 @@ double distance_to(const AxisInA& line, const Vector3d& p) {
   return (p - line.point).cross(line.direction).norm();
 }
 
-/// Where on `axis`, within its stretch, the infinite line `other` comes nearest. Near parallel every place is as near
-/// as any other to within the stretch's length times the angle, so what is returned there does not matter.
-double nearest_place(const AxisInA& axis, const AxisInA& other, double sine_squared, double cosine) {
+/// The place on `axis`, within its bounded length, that is closest to the infinite line `other`. If the lines are
+/// nearly parallel all places are about equally close, so any of them will do.
+double closest_place(const AxisInA& axis, const AxisInA& other, double sine_squared, double cosine) {
   const double along = (other.point - axis.point).dot(axis.direction - cosine * other.direction);
   if (sine_squared < 1e-24) return 0;
   return std::clamp(along / sine_squared, -axis.half_length, axis.half_length);
 }
 
-/// What a cone leaves around what is coaxial with it at the height `t` above the cone's point: positive when pulled
-/// out.
-double room_in_cone(const ConstraintSide& cone, double t, double radius_other, bool cone_is_hole) {
+/// Radial clearance between a cone and a coaxial shape at the height `t` above the cone's point [m]: positive when
+/// pulled out.
+double clearance_in_cone(const ConstraintSide& cone, double t, double radius_other, bool cone_is_hole) {
   const double radius_here = cone.radius + t * cone.detail;
   return cone_is_hole ? radius_here - radius_other : radius_other - radius_here;
 }
@@ -55,32 +55,33 @@ Misalignment of_axes(const Constraint& c, const Pose& X_AB) {
   m.cosine = outer.direction.dot(inner.direction);
   const double sine_squared = outer.direction.cross(inner.direction).squaredNorm();
   m.sine = std::sqrt(sine_squared);
-  const double there = nearest_place(outer, inner, sine_squared, m.cosine);
+  const double there = closest_place(outer, inner, sine_squared, m.cosine);
   m.distance = distance_to(inner, outer.point + there * outer.direction);
 
   const double center = (inner.point - outer.point).dot(outer.direction);
   const double reach = inner.half_length * std::abs(m.cosine);
   const double low = std::max(-outer.half_length, center - reach);
   const double high = std::min(outer.half_length, center + reach);
-  m.engaged = std::max(0.0, high - low);
-  m.mating = 2 * std::min(outer.half_length, inner.half_length);
+  m.engagement_length = std::max(0.0, high - low);
+  m.engagement_length_max = 2 * std::min(outer.half_length, inner.half_length);
   const double middle = std::clamp((low + high) / 2, -outer.half_length, outer.half_length);
   m.offset = distance_to(inner, outer.point + middle * outer.direction);
-  m.play = std::max(0.0, c.clearance);
+  m.local_clearance = std::max(0.0, c.clearance);
 
   if (c.field == NormalField::about_ring) {
     m.offset = m.distance = (inner.point - outer.point).norm();
-    m.engaged = m.mating = 2 * c.side(hole).radius;
+    m.engagement_length = m.engagement_length_max = 2 * c.side(hole).radius;
   }
   if (c.field == NormalField::about_cone) {
-    const bool guide_is_hole = c.guide == hole;
-    const ConstraintSide& cone = c.side(c.guide);
-    const AxisInA& cone_axis = guide_is_hole ? outer : inner;
-    const AxisInA& other_axis = guide_is_hole ? inner : outer;
+    const bool source_is_hole = c.normal_source == hole;
+    const ConstraintSide& cone = c.side(c.normal_source);
+    const AxisInA& cone_axis = source_is_hole ? outer : inner;
+    const AxisInA& other_axis = source_is_hole ? inner : outer;
     const double t = (other_axis.point - cone_axis.point).dot(cone_axis.direction);
-    m.play = std::max(0.0, room_in_cone(cone, t, c.side(opposite(c.guide)).radius, guide_is_hole));
+    m.local_clearance =
+        std::max(0.0, clearance_in_cone(cone, t, c.side(opposite(c.normal_source)).radius, source_is_hole));
   }
-  // Two cones open the same way or do not mate; for all other axes the sense of the direction means nothing.
+  // Two cones mate only if they open the same way. For all other axes the sense of the direction has no meaning.
   const bool two_cones = c.a.detail > 0 && c.b.detail > 0 && c.field == NormalField::about_cone;
   if (!two_cones) m.cosine = std::abs(m.cosine);
   return m;
@@ -100,7 +101,7 @@ Misalignment of_planes(const Constraint& c, const Pose& X_AB) {
 Misalignment of_centers(const Constraint& c, const Pose& X_AB) {
   Misalignment m;
   m.distance = m.offset = (X_AB * c.b.point - c.a.point).norm();
-  m.play = std::max(0.0, c.clearance);
+  m.local_clearance = std::max(0.0, c.clearance);
   return m;
 }
 
@@ -112,14 +113,14 @@ Misalignment of_ball_and_axis(const Constraint& c, const Pose& X_AB) {
   const double t = (ball - axis.point).dot(axis.direction);
   Misalignment m;
   m.distance = distance_to(axis, ball);
-  m.play = std::max(0.0, c.clearance);
+  m.local_clearance = std::max(0.0, c.clearance);
   if (c.kind == ConstraintKind::annular) {
     m.offset = m.distance + std::max(0.0, std::abs(t) - axis.half_length);
   } else {
-    // Room beside the ball, square to the cone's flank: cos h = 1 / sqrt(1 + tan^2 h).
+    // Clearance beside the ball, perpendicular to the cone's flank: cos h = 1 / sqrt(1 + tan^2 h).
     const ConstraintSide& cone = c.side(hole);
     const double cosine = 1 / std::sqrt(1 + cone.detail * cone.detail);
-    m.play = std::max(0.0, (cone.radius + t * cone.detail) * cosine - c.side(c.pin).radius);
+    m.local_clearance = std::max(0.0, (cone.radius + t * cone.detail) * cosine - c.side(c.pin).radius);
     m.offset = m.distance;
   }
   return m;
@@ -127,26 +128,27 @@ Misalignment of_ball_and_axis(const Constraint& c, const Pose& X_AB) {
 
 /// A roller's axis or a straight edge against a plane: theta is the angle out of the plane.
 Misalignment of_axis_and_plane(const Constraint& c, const Pose& X_AB) {
-  const AxisInA plane = axis_of(c, c.guide, X_AB);
-  const AxisInA axis = axis_of(c, opposite(c.guide), X_AB);
+  const AxisInA plane = axis_of(c, c.normal_source, X_AB);
+  const AxisInA axis = axis_of(c, opposite(c.normal_source), X_AB);
   Misalignment m;
   m.sine = std::abs(plane.direction.dot(axis.direction));
   m.cosine = plane.direction.cross(axis.direction).norm();
   const double height = (axis.point - plane.point).dot(plane.direction);
-  m.distance = m.offset = std::abs(height - c.side(opposite(c.guide)).radius);
+  m.distance = m.offset = std::abs(height - c.side(opposite(c.normal_source)).radius);
   return m;
 }
 
 Misalignment of_ball_and_plane(const Constraint& c, const Pose& X_AB) {
-  const AxisInA plane = axis_of(c, c.guide, X_AB);
-  const Vector3d ball = axis_of(c, opposite(c.guide), X_AB).point;
+  const AxisInA plane = axis_of(c, c.normal_source, X_AB);
+  const Vector3d ball = axis_of(c, opposite(c.normal_source), X_AB).point;
   Misalignment m;
-  m.distance = m.offset = std::abs((ball - plane.point).dot(plane.direction) - c.side(opposite(c.guide)).radius);
+  m.distance = m.offset =
+      std::abs((ball - plane.point).dot(plane.direction) - c.side(opposite(c.normal_source)).radius);
   return m;
 }
 
-/// x / s of the header: by how much the surfaces miss each other, in voxels.
-double miss(const Constraint& c, const Misalignment& m, double voxel_size) {
+/// x / s of the header.
+double normalized_misalignment(const Constraint& c, const Misalignment& m, double voxel_size) {
   const double tangent = m.cosine > 0 ? m.sine / m.cosine : 1e9;
   switch (c.pairing) {
     case Pairing::plane_plane:
@@ -159,20 +161,20 @@ double miss(const Constraint& c, const Misalignment& m, double voxel_size) {
     case Pairing::point_axis:
       break;
   }
-  return (m.offset + m.engaged / 2 * tangent - m.play) / voxel_size;
+  return (m.offset + m.engagement_length / 2 * tangent - m.local_clearance) / voxel_size;
 }
 
-/// How far a pin has come into its hole: 0 before its end has passed the rim, 1 once a voxel of it is in (of a side
-/// shorter than that: all of it).
-double engagement(const Constraint& c, const Misalignment& m, double voxel_size) {
+/// Factor for the engagement of a pin: 0 before its end has passed the rim, 1 once a voxel of its length is in (or all
+/// of it, if it is shorter).
+double engagement_fraction(const Constraint& c, const Misalignment& m, double voxel_size) {
   if (c.pairing != Pairing::axis_axis) return 1;
-  return std::min(1.0, m.engaged / std::min(voxel_size, m.mating));
+  return std::min(1.0, m.engagement_length / std::min(voxel_size, m.engagement_length_max));
 }
 
 /// d_c of eq. 8.2: the clearance where there is a fit, else the voxel size.
 double distance_scale(const Constraint& c, const Misalignment& m, double voxel_size) {
   const bool is_fit = c.pin != Side::neither && c.field != NormalField::about_cone;
-  return is_fit ? std::max(m.play, kClearanceLeast) : voxel_size;
+  return is_fit ? std::max(m.local_clearance, kClearanceMin) : voxel_size;
 }
 
 }  // namespace
@@ -204,14 +206,14 @@ double alignment(AlignmentMeasure measure, const Constraint& constraint, const M
   if (!std::isfinite(m.offset + m.sine + m.cosine)) return 0;
   double alpha = 0;
   if (measure == AlignmentMeasure::by_type) {
-    const double missed = std::max(0.0, miss(constraint, m, scales.voxel_size));
-    alpha = std::max((1 - missed) * engagement(constraint, m, scales.voxel_size), 1 - missed / kGuided);
+    const double x_over_s = std::max(0.0, normalized_misalignment(constraint, m, scales.voxel_size));
+    alpha = std::max((1 - x_over_s) * engagement_fraction(constraint, m, scales.voxel_size), 1 - x_over_s / kGuidedX);
   } else {
     const double theta = pinned::atan2(m.sine, m.cosine);
     double angle_term = theta;
     double distance_term = scales.steepness * m.distance / distance_scale(constraint, m, scales.voxel_size);
     if (measure == AlignmentMeasure::faas) {
-      angle_term = theta * std::max(1.0, m.engaged / scales.voxel_size);
+      angle_term = theta * std::max(1.0, m.engagement_length / scales.voxel_size);
       distance_term = m.distance / scales.voxel_size;
     }
     alpha = 0.5 * pinned::exp(-angle_term) + 0.5 * pinned::exp(-distance_term);
@@ -219,7 +221,7 @@ double alignment(AlignmentMeasure measure, const Constraint& constraint, const M
   return std::clamp(alpha, 0.0, 1.0);
 }
 
-double wholly_beside(const Constraint& round, const Misalignment& m, const AlignmentScales& scales) {
+double clear_of_hole(const Constraint& round, const Misalignment& m, const AlignmentScales& scales) {
   VERISIM_ASSERT(round.kind != ConstraintKind::none);
   VERISIM_ASSERT(round.pairing == Pairing::axis_axis);
   VERISIM_ASSERT(is_positive(scales.voxel_size));

@@ -10,27 +10,27 @@
 namespace verisim {
 namespace {
 
-/// Damping against the trace of J^T J: keeps what no constraint speaks of where it is, and moves the rest by 1e-10 of
-/// its way.
+/// Damping relative to the trace of J^T J. It keeps unconstrained motions at zero and shortens the others by 1e-10.
 constexpr double kDamping = 1e-10;
-constexpr double kStill = 1e-9;  ///< m: a step shorter than this ends the search
+constexpr double kStepMin = 1e-9;  ///< m: a shorter step ends the iteration
 
-/// The normal equations of all rows. Unknowns: B's way [m] and its turn times `length` [m], about B's centre.
+/// The normal equations of all rows. Unknowns: B's displacement [m] and its rotation times `length` [m], about B's
+/// centre.
 class Rows {
  public:
   Rows(const Vector3d& center, double length) : center_(center), length_(length) {}
 
-  /// The point p of B should move by `miss` along `direction`.
-  void place(const Vector3d& p, const Vector3d& direction, double miss, double weight) {
+  /// The point p of B should move by `error` along `direction`.
+  void place(const Vector3d& p, const Vector3d& direction, double error, double weight) {
     Vector6d row;
     row << direction, (p - center_).cross(direction) / length_;
-    add(row, miss, weight);
+    add(row, error, weight);
   }
-  /// B should turn by `miss` [rad] about `axis`.
-  void turn(const Vector3d& axis, double miss, double weight) {
+  /// B should turn by `error` [rad] about `axis`.
+  void turn(const Vector3d& axis, double error, double weight) {
     Vector6d row;
     row << Vector3d::Zero(), axis;
-    add(row, length_ * miss, weight);
+    add(row, length_ * error, weight);
   }
 
   [[nodiscard]] Vector6d step() const {
@@ -42,10 +42,10 @@ class Rows {
   [[nodiscard]] double squares() const { return squares_; }
 
  private:
-  void add(const Vector6d& row, double miss, double weight) {
+  void add(const Vector6d& row, double error, double weight) {
     JtJ_.noalias() += weight * row * row.transpose();
-    Jtr_ += weight * miss * row;
-    squares_ += weight * miss * miss;
+    Jtr_ += weight * error * row;
+    squares_ += weight * error * error;
   }
   Vector3d center_;
   double length_;
@@ -54,7 +54,7 @@ class Rows {
   double squares_ = 0;
 };
 
-/// Two unit vectors square to `axis` and to each other.
+/// Two unit vectors perpendicular to `axis` and to each other.
 struct Across {
   Vector3d first, second;
   explicit Across(const Vector3d& axis) {
@@ -65,7 +65,7 @@ struct Across {
   }
 };
 
-/// What a constraint compares, brought into coordinates A. `wanted`: where B's direction should point.
+/// The two sides of a constraint in coordinates A. `wanted`: target of B's direction.
 struct Sides {
   Vector3d a_point, a_direction, b_point, b_direction;
   Sides(const Constraint& c, const Pose& X_AB)
@@ -75,7 +75,7 @@ struct Sides {
         b_direction(X_AB.rotation * c.b.direction) {}
 };
 
-/// Turn B's direction onto `wanted`: two rows. The rotation vector is along b x wanted, as long as the angle.
+/// Two rows that rotate B's direction onto `wanted`. The rotation vector is along b x wanted; its length is the angle.
 void align_directions(Rows& rows, const Vector3d& b, const Vector3d& wanted, double weight) {
   const Vector3d cross = b.cross(wanted);
   const Across square(wanted);
@@ -95,12 +95,12 @@ void place_on_point(Rows& rows, const Vector3d& p, const Vector3d& wanted, doubl
   }
 }
 
-/// The axis or ball of one side at its radius from the plane of the other. If the plane is B's, the plane moves.
+/// Rows that put the axis or ball of one side at its radius from the plane of the other. The plane may be B's.
 void place_at_height(Rows& rows, const Constraint& c, const Sides& s, double weight) {
-  const bool plane_is_a = c.guide == Side::a;
+  const bool plane_is_a = c.normal_source == Side::a;
   const Vector3d normal = plane_is_a ? s.a_direction : s.b_direction;
   const Vector3d above = plane_is_a ? Vector3d(s.b_point - s.a_point) : Vector3d(s.a_point - s.b_point);
-  const double too_low = c.side(opposite(c.guide)).radius - above.dot(normal);
+  const double too_low = c.side(opposite(c.normal_source)).radius - above.dot(normal);
   rows.place(plane_is_a ? s.b_point : s.a_point, normal, plane_is_a ? too_low : -too_low, weight);
 }
 
@@ -108,7 +108,7 @@ void add_axes(Rows& rows, const Constraint& c, const Sides& s, double weight) {
   const bool same_sense = s.a_direction.dot(s.b_direction) >= 0;
   align_directions(rows, s.b_direction, same_sense ? s.a_direction : Vector3d(-s.a_direction), weight);
   if (c.field == NormalField::about_ring) return place_on_point(rows, s.b_point, s.a_point, weight);
-  // The pin's middle on the hole's line: whichever of the two is B moves.
+  // The pin's middle on the hole's axis. Either may be B, which moves.
   if (c.pin == Side::b) return place_on_line(rows, s.b_point, s.a_point, s.a_direction, weight);
   const Vector3d nearest = s.b_point + (s.a_point - s.b_point).dot(s.b_direction) * s.b_direction;
   place_on_line(rows, nearest, s.a_point, s.b_direction, weight);
@@ -121,7 +121,7 @@ void add_ball_on_axis(Rows& rows, const Constraint& c, const Sides& s, double we
 }
 
 void add_axis_along_plane(Rows& rows, const Constraint& c, const Sides& s, double weight) {
-  const bool plane_is_a = c.guide == Side::a;
+  const bool plane_is_a = c.normal_source == Side::a;
   const Vector3d& normal = plane_is_a ? s.a_direction : s.b_direction;
   const Vector3d& axis = plane_is_a ? s.b_direction : s.a_direction;
   const Vector3d about = axis.cross(normal);
@@ -154,7 +154,7 @@ void add(Rows& rows, const Constraint& c, const Pose& X_AB, double weight) {
   }
 }
 
-/// `pose` with B turned by `turn` about its `center` and moved by `way`.
+/// `pose` with B rotated by `turn` about its `center` and displaced by `way`.
 Pose moved(const Pose& pose, const Vector3d& center, const Vector3d& way, const Vector3d& turn) {
   const Quaterniond rotation = (rotation_from_vector(turn) * pose.rotation).normalized();
   return {pose * center + way - rotation * center, rotation};
@@ -181,9 +181,9 @@ ConstraintForce constraint_force(std::span<const Engaged> engaged, const Pose& X
   for (; result.steps < parameters.steps_max; ++result.steps) {
     Rows rows(result.X_AB_target * center, parameters.length);
     for (const Engaged& e : engaged) add(rows, *e.constraint, result.X_AB_target, e.alpha);
-    result.unsatisfied = std::sqrt(rows.squares());
+    result.residual = std::sqrt(rows.squares());
     const Vector6d xi = rows.step();
-    if (xi.squaredNorm() < kStill * kStill) break;
+    if (xi.squaredNorm() < kStepMin * kStepMin) break;
     result.X_AB_target = moved(result.X_AB_target, center, xi.head<3>(), xi.tail<3>() / parameters.length);
   }
 

@@ -5,12 +5,12 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
-#include "engine/constraint/restore_run.hpp"
+#include "engine/constraint/restore_batch.hpp"
 
 namespace verisim {
 namespace {
 
-constexpr double kAlphaLeast = 1e-9;  ///< below, a constraint changes no bit of a force in float
+constexpr double kAlphaMin = 1e-9;  ///< below, a constraint changes no bit of a force in float
 
 Vector3d point_of(const ContactColumns& c, std::uint32_t i) {
   return c.origin + Vector3d(c.x[i], c.y[i], c.z[i]);
@@ -30,7 +30,7 @@ ConstraintLink::ConstraintLink(const EntitySets& a, const EntitySets& b, const C
     : options_(options),
       memo_(a, b, options.reduction, options.tolerances, options.limits),
       in_frame_(memo_.constraints_max()),
-      holdings_(memo_.candidates_max()) {
+      active_sets_(memo_.candidates_max()) {
   VERISIM_ASSERT(is_positive(options.scales.voxel_size));
   engaged_.reserve(memo_.constraints_max());
 }
@@ -48,20 +48,20 @@ const ActiveConstraint& ConstraintLink::active(std::uint32_t constraint) {
   if (state.stamp == stamp_) return state.active;
   const Constraint& c = memo_.constraint(constraint);
   double alpha = alignment(options_.measure, c, misalignment(c, X_AB_), options_.scales);
-  for (const std::uint16_t number : memo_.hands_over_to(constraint)) {
+  for (const std::uint16_t number : memo_.gates_of(constraint)) {
     const Constraint& round = memo_.constraint(number);
-    alpha *= wholly_beside(round, misalignment(round, X_AB_), options_.scales);
+    alpha *= clear_of_hole(round, misalignment(round, X_AB_), options_.scales);
   }
   state = {.stamp = stamp_, .engaged = 0, .active = activate(c, X_AB_, alpha)};
   return state.active;
 }
 
-void ConstraintLink::fill(Holding& h, const Candidates& found) {
+void ConstraintLink::fill(ActiveSet& h, const Candidates& found) {
   for (std::size_t i = 0; i < found.count; ++i) {
     const double alpha = active(found.constraint[i]).alpha;
-    if (!(alpha > kAlphaLeast)) continue;
+    if (!(alpha > kAlphaMin)) continue;
     std::size_t place = h.count;
-    if (place == kHoldingMax) {  // three normals span everything: of more, the three best aligned
+    if (place == kActiveMax) {  // three normals span space: keep the three best aligned
       place = static_cast<std::size_t>(std::min_element(h.alpha.begin(), h.alpha.end()) - h.alpha.begin());
       if (h.alpha[place] >= alpha) continue;
     } else {
@@ -73,18 +73,18 @@ void ConstraintLink::fill(Holding& h, const Candidates& found) {
   }
 }
 
-const ConstraintLink::Holding& ConstraintLink::holding(std::uint32_t candidates) {
-  Holding& h = holdings_[candidates];
-  // The last place is for pairs that found no room in the memo: it belongs to another pair at every look-up.
-  const bool is_spare = candidates + 1 == holdings_.size();
-  if (h.stamp == stamp_ && !is_spare) return h;
+const ConstraintLink::ActiveSet& ConstraintLink::active_set(std::uint32_t candidates) {
+  ActiveSet& h = active_sets_[candidates];
+  // The last element is for pairs for which the memo has no room: it belongs to another pair at every look-up.
+  const bool is_overflow = candidates + 1 == active_sets_.size();
+  if (h.stamp == stamp_ && !is_overflow) return h;
   h.stamp = stamp_;
   h.count = 0;
   if (pose_is_finite_) fill(h, memo_.candidates(candidates));
   return h;
 }
 
-void ConstraintLink::count_engaged(const Holding& h, std::uint32_t contacts) {
+void ConstraintLink::count_engaged(const ActiveSet& h, std::uint32_t contacts) {
   for (std::size_t k = 0; k < h.count; ++k) {
     InFrame& state = in_frame_[h.constraint[k]];
     if (state.engaged == 0) {
@@ -97,13 +97,13 @@ void ConstraintLink::count_engaged(const Holding& h, std::uint32_t contacts) {
   }
 }
 
-void ConstraintLink::restore_under(const Holding& h, const ContactColumns& c, std::uint32_t begin, std::uint32_t end) {
+void ConstraintLink::restore_by(const ActiveSet& h, const ContactColumns& c, std::uint32_t begin, std::uint32_t end) {
   if (h.count == 1) {
     ActiveConstraint only = *h.active[0];
     only.alpha = h.alpha[0];
     only.point -= c.origin;
-    return restore_run({c.x + begin, c.y + begin, c.z + begin, c.fx + begin, c.fy + begin, c.fz + begin, end - begin},
-                       only);
+    return restore_batch({c.x + begin, c.y + begin, c.z + begin, c.fx + begin, c.fy + begin, c.fz + begin, end - begin},
+                         only);
   }
   for (std::uint32_t i = begin; i < end; ++i) {
     set_force(c, i,
@@ -111,8 +111,8 @@ void ConstraintLink::restore_under(const Holding& h, const ContactColumns& c, st
   }
 }
 
-/// Neighbouring contacts mostly lie in voxels of the same sets: a run of equal pairs is looked up once, and counted as
-/// the hits that it is.
+/// Neighbouring contacts mostly have the same pair of sets. A sequence of equal pairs is looked up once and counted as
+/// so many hits.
 template <bool restore_forces>
 RestoreResult ConstraintLink::walk(const ContactColumns& c) {
   VERISIM_ASSERT(c.size == 0 || c.set_a != nullptr);
@@ -124,7 +124,7 @@ RestoreResult ConstraintLink::walk(const ContactColumns& c) {
     const FeatureSetId b = c.set_b[begin];
     for (end = begin + 1; end < c.size && c.set_a[end] == a && c.set_b[end] == b;) ++end;
     const std::uint32_t length = end - begin;
-    const Holding& h = holding(memo_.look_up(a, b));
+    const ActiveSet& h = active_set(memo_.look_up(a, b));
     memo_.count_hits(length - 1);
     if (h.count == 0) continue;
     result.restored += length;
@@ -134,7 +134,7 @@ RestoreResult ConstraintLink::walk(const ContactColumns& c) {
       result.alpha = h.alpha[k];
       result.kind = h.active[k]->kind;
     }
-    if constexpr (restore_forces) restore_under(h, c, begin, end);
+    if constexpr (restore_forces) restore_by(h, c, begin, end);
   }
   result.misses = static_cast<std::uint32_t>(memo_.counts().misses() - misses_before);
   result.hits = c.size - result.misses;

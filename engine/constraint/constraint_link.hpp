@@ -1,13 +1,13 @@
-// The hybrid method between two bodies: contacts with their set ids come in, their forces go out restored.
+// The hybrid method `restore` between two bodies: looks up the constraints of each contact and restores its force.
 //
-// Source: dissertation sections 6.4.2 (stateful constraints: what depends on the pose is found once a frame) and 8.2.2.
-// One ConstraintLink per collision link. Coordinates: body coordinates of A (the body in whose coordinates the contacts
-// are); forces act on B. Nothing here knows what a voxel is, and nothing allocates after construction.
+// Source: dissertation sections 6.4.2 (stateful constraints: what depends on the pose is computed once per frame) and
+// 8.2.2. One ConstraintLink per collision link. Body coordinates of A, in which contacts are given; forces act on B.
+// Does not know voxels. No allocation after construction.
 //
 // Order of a frame:
 //     link.begin_frame(X_AB);
-//     RestoreResult r = link.restore_contacts(columns);      // or look_up_contacts: the same without touching forces
-//     ... link.engaged() ...                                 // constraints met in this frame (blend.hpp)
+//     RestoreResult r = link.restore_contacts(columns);      // or look_up_contacts, which leaves forces alone
+//     ... link.engaged() ...                                 // the constraints of this frame (blend.hpp)
 #pragma once
 
 #include <cstdint>
@@ -42,17 +42,17 @@ struct ConstraintOptions {
   MemoLimits limits = {};
 };
 
-/// One frame's look-ups. The constraint is that of the contact with the largest alpha (run file: `constraint`,
-/// `alignment`); of equal ones the first.
+/// Result of one frame. `kind` and `alpha` are those of the contact with the largest alpha, of equal ones the first
+/// (run file: `constraint`, `alignment`).
 struct RestoreResult {
   ConstraintKind kind = ConstraintKind::none;
   double alpha = 0;
   std::uint32_t hits = 0;      ///< memoized look-ups
-  std::uint32_t misses = 0;    ///< look-ups that had to be recognized
+  std::uint32_t misses = 0;    ///< look-ups that needed recognition
   std::uint32_t restored = 0;  ///< contacts under at least one aligned constraint
 };
 
-/// A constraint that at least one contact of this frame stands under.
+/// A constraint under which at least one contact of this frame stands.
 struct Engaged {
   const Constraint* constraint = nullptr;
   double alpha = 0;
@@ -64,53 +64,52 @@ class ConstraintLink {
   /// Both must outlive the link. @pre options.scales.voxel_size > 0
   ConstraintLink(const EntitySets& a, const EntitySets& b, const ConstraintOptions& options = {});
 
-  /// Forgets what depended on the last pose. A pose that is not finite engages nothing in this frame.
+  /// Sets the pose of a new frame. If it is not finite, no constraint engages in this frame.
   /// @pre the rotation is unit, if finite
   void begin_frame(const Pose& X_AB);
 
-  /// Looks every contact up and restores its force in place. About 5 ns a contact; per constraint met, 100 ns a frame.
+  /// Looks up every contact and restores its force in place. About 5 ns per contact, and 100 ns per constraint.
   /// @pre no column is null, unless there are no contacts; the origin is finite
   RestoreResult restore_contacts(const ContactColumns& contacts);
-  /// The same look-ups with forces left alone (fx, fy, fz may be null): for comparators and statistics.
+  /// The same look-ups without a change of forces (fx, fy, fz may be null): for comparators and statistics.
   /// @pre the columns of sets are not null, unless there are no contacts
   RestoreResult look_up_contacts(const ContactColumns& contacts);
 
-  /// What the contacts looked up in this frame stand under, in the order of first meeting. Valid until begin_frame.
+  /// The constraints of this frame's contacts, in the order of their first contacts. Valid until begin_frame.
   [[nodiscard]] std::span<const Engaged> engaged() const { return engaged_; }
   [[nodiscard]] const MemoCounts& counts() const { return memo_.counts(); }
-  [[nodiscard]] const ConstraintMemo& memo() const { return memo_; }
 
  private:
-  /// Pose-dependent state of one constraint; of this frame if the stamp is.
+  /// Pose-dependent state of one constraint. Valid if `stamp` is this frame's.
   struct InFrame {
     std::uint64_t stamp = 0;
-    std::uint32_t engaged = 0;  ///< place in engaged_ plus one
+    std::uint32_t engaged = 0;  ///< index in engaged_ plus one; 0: not engaged
     ActiveConstraint active;
   };
-  /// What holds for one pair of sets in this frame.
-  struct Holding {
+  /// The aligned constraints of one pair of feature sets in this frame: at most the three best aligned.
+  struct ActiveSet {
     std::uint64_t stamp = 0;
     std::uint32_t count = 0;
-    std::array<std::uint16_t, kHoldingMax> constraint = {};
-    std::array<double, kHoldingMax> alpha = {};
-    std::array<const ActiveConstraint*, kHoldingMax> active = {};
+    std::array<std::uint16_t, kActiveMax> constraint = {};
+    std::array<double, kActiveMax> alpha = {};
+    std::array<const ActiveConstraint*, kActiveMax> active = {};
   };
 
   template <bool restore_forces>
   RestoreResult walk(const ContactColumns& contacts);
-  const Holding& holding(std::uint32_t candidates);
-  void fill(Holding& h, const Candidates& found);
+  const ActiveSet& active_set(std::uint32_t candidates);
+  void fill(ActiveSet& h, const Candidates& found);
   const ActiveConstraint& active(std::uint32_t constraint);
-  static void restore_under(const Holding& h, const ContactColumns& contacts, std::uint32_t begin, std::uint32_t end);
-  void count_engaged(const Holding& h, std::uint32_t contacts);
+  static void restore_by(const ActiveSet& h, const ContactColumns& contacts, std::uint32_t begin, std::uint32_t end);
+  void count_engaged(const ActiveSet& h, std::uint32_t contacts);
 
   ConstraintOptions options_;
   ConstraintMemo memo_;
   Pose X_AB_;
   bool pose_is_finite_ = false;
   std::uint64_t stamp_ = 0;
-  std::vector<InFrame> in_frame_;  ///< by constraint
-  std::vector<Holding> holdings_;  ///< by candidates
+  std::vector<InFrame> in_frame_;       ///< by constraint
+  std::vector<ActiveSet> active_sets_;  ///< by candidates
   std::vector<Engaged> engaged_;
 };
 

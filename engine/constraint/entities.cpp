@@ -6,13 +6,14 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
+#include "engine/geometry/entity_check.hpp"
 
 namespace verisim {
 namespace {
 
-constexpr std::size_t kSetsMax = 65536;  ///< that FeatureSetId can number
-constexpr double kDeclaredHalf = 0.5;    ///< m to each side of a plane or line of which nothing else is known
+constexpr std::size_t kSetsMax = 65536;  ///< ids of FeatureSetId
 
 using Range = std::array<double, 2>;
 
@@ -26,38 +27,31 @@ Role role_of(bool hole) {
   return hole ? Role::hole : Role::pin;
 }
 
-// Each shape with its bounds: moved to the middle of its stretch, or refused (an entity of no equation) if it has no
-// size. `u`, `v` are the face's ranges, `t` the edge's.
+// Each sound shape with its bounds: moved to the middle of its bounded part, or replaced by OtherSurface or OtherCurve
+// if that part has no size. `u`, `v` are the face's ranges, `t` the edge's.
 
 Entity bounded(Plane s, const Range& u, const Range& v) {
-  if (!is_finite(s.point) || !is_unit(s.normal) || !is_unit(s.x_axis)) return Bounded<OtherSurface>();
   if (!is_positive(half(u)) || !is_positive(half(v))) return Bounded<OtherSurface>();
   s.point += middle(u) * s.x_axis + middle(v) * s.normal.cross(s.x_axis);
   return Bounded<Plane>{s, std::min(half(u), half(v))};
 }
 Entity bounded(Cylinder s, const Range& /*u*/, const Range& v) {
-  if (!is_finite(s.point) || !is_unit(s.direction)) return Bounded<OtherSurface>();
-  if (!is_positive(s.radius) || !is_positive(half(v))) return Bounded<OtherSurface>();
+  if (!is_positive(half(v))) return Bounded<OtherSurface>();
   s.point += middle(v) * s.direction;
   return Bounded<Cylinder>{s, half(v), 0, role_of(s.hole)};
 }
 Entity bounded(Cone s, const Range& /*u*/, const Range& v) {
   constexpr double kSteepest = 1.5707;  // just under pi/2, where a cone becomes a plane
-  if (!is_finite(s.point) || !is_unit(s.direction)) return Bounded<OtherSurface>();
-  if (!std::isfinite(s.radius) || s.radius < 0 || !is_positive(half(v))) return Bounded<OtherSurface>();
-  if (!is_positive(s.half_angle) || s.half_angle >= kSteepest) return Bounded<OtherSurface>();
+  if (!is_positive(half(v)) || s.half_angle >= kSteepest) return Bounded<OtherSurface>();
   const double tangent = pinned::tan(s.half_angle);
   s.point += middle(v) * s.direction;
   s.radius += middle(v) * tangent;
   return Bounded<Cone>{s, half(v), tangent, role_of(s.hole)};
 }
 Entity bounded(const Sphere& s, const Range& /*u*/, const Range& /*v*/) {
-  if (!is_finite(s.center) || !is_positive(s.radius)) return Bounded<OtherSurface>();
   return Bounded<Sphere>{s, 0, 0, role_of(s.hole)};
 }
 Entity bounded(const Torus& s, const Range& /*u*/, const Range& /*v*/) {
-  if (!is_finite(s.center) || !is_unit(s.direction)) return Bounded<OtherSurface>();
-  if (!is_positive(s.major_radius) || !is_positive(s.minor_radius)) return Bounded<OtherSurface>();
   return Bounded<Torus>{s, s.minor_radius, 0, role_of(s.hole)};
 }
 Entity bounded(const OtherSurface& /*s*/, const Range& /*u*/, const Range& /*v*/) {
@@ -65,25 +59,23 @@ Entity bounded(const OtherSurface& /*s*/, const Range& /*u*/, const Range& /*v*/
 }
 
 Entity bounded(Line s, const Range& t, Role role) {
-  if (!is_finite(s.point) || !is_unit(s.direction) || !is_positive(half(t))) return Bounded<OtherCurve>();
+  if (!is_positive(half(t))) return Bounded<OtherCurve>();
   s.point += middle(t) * s.direction;
   return Bounded<Line>{s, half(t), 0, role};
 }
 Entity bounded(const Circle& s, const Range& t, Role role) {
-  if (!is_finite(s.center) || !is_unit(s.normal)) return Bounded<OtherCurve>();
-  if (!is_positive(s.radius) || !is_positive(half(t))) return Bounded<OtherCurve>();
+  if (!is_positive(half(t))) return Bounded<OtherCurve>();
   return Bounded<Circle>{s, s.radius, 0, role};
 }
 Entity bounded(const Ellipse& s, const Range& t, Role role) {
-  if (!is_finite(s.center) || !is_unit(s.normal) || !is_positive(half(t))) return Bounded<OtherCurve>();
-  if (!is_positive(s.major_radius) || !is_positive(s.minor_radius)) return Bounded<OtherCurve>();
+  if (!is_positive(half(t))) return Bounded<OtherCurve>();
   return Bounded<Ellipse>{s, s.major_radius, 0, role};
 }
 Entity bounded(const OtherCurve& /*s*/, const Range& /*t*/, Role /*role*/) {
   return Bounded<OtherCurve>();
 }
 
-/// The role of the round face that an edge bounds; unknown if it bounds none, or a pin and a hole at once.
+/// The role of the curved face that an edge bounds; unknown if it bounds none, or both a pin and a hole.
 Role role_beside(const Edge& edge, std::span<const Face> faces) {
   Role role = Role::unknown;
   for (const std::uint32_t number : edge.faces) {
@@ -101,39 +93,27 @@ Role role_beside(const Edge& edge, std::span<const Face> faces) {
   return role;
 }
 
+/// May it bound a plane (EntitySets::rounds_at)?
 bool is_round(const Entity& e) {
-  return std::holds_alternative<Bounded<Cylinder>>(e) || std::holds_alternative<Bounded<Cone>>(e) ||
-         std::holds_alternative<Bounded<Circle>>(e);
+  constexpr Overloaded is_round_shape{[](const Plane&) { return false; },   [](const Cylinder&) { return true; },
+                                      [](const Cone&) { return true; },     [](const Sphere&) { return false; },
+                                      [](const Torus&) { return false; },   [](const OtherSurface&) { return false; },
+                                      [](const Line&) { return false; },    [](const Circle&) { return true; },
+                                      [](const Ellipse&) { return false; }, [](const OtherCurve&) { return false; }};
+  return std::visit([&](const auto& bounded) { return is_round_shape(bounded.shape); }, e);
 }
 
 }  // namespace
 
 Entity entity_of(const Face& face) {
+  if (fault_of(face.surface)) return Bounded<OtherSurface>();
   return std::visit([&](const auto& surface) { return bounded(surface, face.u_range, face.v_range); }, face.surface);
 }
 
 Entity entity_of(const Edge& edge, std::span<const Face> faces) {
+  if (fault_of(edge.curve)) return Bounded<OtherCurve>();
   return std::visit([&](const auto& curve) { return bounded(curve, edge.t_range, role_beside(edge, faces)); },
                     edge.curve);
-}
-
-Entity entity_declared(const Surface& surface) {
-  Face face;
-  face.surface = surface;
-  face.u_range = face.v_range = {-kDeclaredHalf, kDeclaredHalf};
-  if (const auto* cylinder = std::get_if<Cylinder>(&surface)) {
-    face.v_range = {-2 * cylinder->radius, 2 * cylinder->radius};
-  }
-  if (const auto* cone = std::get_if<Cone>(&surface)) face.v_range = {0, 2 * cone->radius};
-  return entity_of(face);
-}
-
-Entity entity_declared(const Curve& curve) {
-  Edge edge;
-  edge.curve = curve;
-  edge.t_range = {0, 2 * pinned::kPi};
-  if (std::holds_alternative<Line>(curve)) edge.t_range = {-kDeclaredHalf, kDeclaredHalf};
-  return entity_of(edge, {});
 }
 
 std::vector<Entity> EntitySets::entities_of(std::span<const Face> faces, std::span<const Edge> edges) {
@@ -158,7 +138,7 @@ void EntitySets::add(std::span<const std::uint32_t> set, std::size_t sets) {
   }
 }
 
-void EntitySets::find_rounds() {
+void EntitySets::find_curved_neighbors() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::size_t id = 0; id < size(); ++id) {
     const auto members = set(static_cast<FeatureSetId>(id));
@@ -171,12 +151,12 @@ void EntitySets::find_rounds() {
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  first_round_.assign(entities_.size() + 1, 0);
+  first_neighbor_.assign(entities_.size() + 1, 0);
   for (const auto& [plane, round] : pairs) {
-    ++first_round_[plane + 1U];
-    rounds_.push_back(round);
+    ++first_neighbor_[plane + 1U];
+    neighbors_.push_back(round);
   }
-  std::partial_sum(first_round_.begin(), first_round_.end(), first_round_.begin());
+  std::partial_sum(first_neighbor_.begin(), first_neighbor_.end(), first_neighbor_.begin());
 }
 
 }  // namespace verisim

@@ -1,7 +1,7 @@
-// What recognition sees of a part: its faces and edges as closed variants, and the sets of them that voxels hold.
+// The input of recognition: the faces and edges of a part as closed variants, and the sets of them that voxels hold.
 //
-// Part coordinates, m and rad. An entity that has no size (zero radius, zero length, a number that is not finite)
-// becomes OtherSurface or OtherCurve here: no recognizer takes those, so none needs to doubt its input.
+// Part coordinates, m and rad. An entity without size (zero radius, zero length, a number that is not finite) becomes
+// OtherSurface or OtherCurve. No recognizer takes those, so recognizers may rely on their input.
 #pragma once
 
 #include <array>
@@ -16,17 +16,17 @@
 
 namespace verisim {
 
-/// Is the material inside the round shape (pin) or outside (hole)? A circle takes it from the round face that it
+/// Pin: the material is inside of the curved shape. Hole: outside. A circle has the role of the curved face that it
 /// bounds.
 enum class Role : std::uint8_t { unknown, pin, hole };
 
-/// A shape of engine/geometry/entity.hpp with the stretch of it that the part really has: moved so that its point is
-/// the middle of that stretch (a cone's radius is the one there).
+/// A shape of engine/geometry/entity.hpp with its bounds in the part. Its point is moved to the middle of the bounded
+/// part; a cone's radius is the one there.
 template <typename Shape>
 struct Bounded {
   Shape shape;
-  double half_length = 0;  ///< m: along the axis or line to each side; a plane: half of its shorter side; a ball: 0.
-                           ///< A rim does not say how long its pin or hole is: it counts for its radius.
+  double half_length = 0;  ///< m: along the axis or line to each side. Plane: half of its shorter side. Ball: 0.
+                           ///< Circle: its radius, because a rim does not tell how long its pin or hole is.
   double tangent = 0;      ///< of a cone's half angle; 0 for all others
   Role role = Role::unknown;
 };
@@ -38,11 +38,6 @@ using Entity =
 /// Faces and edges as entities. O(1).
 [[nodiscard]] Entity entity_of(const Face& face);
 [[nodiscard]] Entity entity_of(const Edge& edge, std::span<const Face> faces);
-
-/// An entity declared by hand, of which no more is known than the shape (`addFeatureSet` of a scenario): a round face
-/// is taken to reach one diameter along its axis, a plane and a line half a metre to each side.
-[[nodiscard]] Entity entity_declared(const Surface& surface);
-[[nodiscard]] Entity entity_declared(const Curve& curve);
 
 /// Number of a set of entities of one part; 0 is the empty set.
 using FeatureSetId = std::uint16_t;
@@ -66,7 +61,7 @@ class EntitySets {
     first_.clear();
     for (std::size_t id = 0; id < count; ++id) add(sets[static_cast<FeatureSetId>(id)], count);
     first_.push_back(static_cast<std::uint32_t>(numbers_.size()));
-    find_rounds();
+    find_curved_neighbors();
   }
 
   [[nodiscard]] std::size_t size() const { return first_.size() - 1; }  ///< sets, the empty one included
@@ -81,22 +76,23 @@ class EntitySets {
     if (id >= size()) return {};
     return {numbers_.data() + first_[id], first_[id + 1U] - first_[id]};
   }
-  /// What may bound a plane: cylinders, cones and circles that share a set with it, ascending. Of all else: nothing.
-  [[nodiscard]] std::span<const std::uint32_t> rounds_at(std::uint32_t plane) const {
-    if (plane + 1U >= first_round_.size()) return {};
-    return {rounds_.data() + first_round_[plane], first_round_[plane + 1U] - first_round_[plane]};
+  /// Cylinders, cones and circles that belong to a common set with a plane, ascending: they may bound it. Empty for
+  /// other entities.
+  [[nodiscard]] std::span<const std::uint32_t> curved_neighbors(std::uint32_t plane) const {
+    if (plane + 1U >= first_neighbor_.size()) return {};
+    return {neighbors_.data() + first_neighbor_[plane], first_neighbor_[plane + 1U] - first_neighbor_[plane]};
   }
 
  private:
   [[nodiscard]] static std::vector<Entity> entities_of(std::span<const Face> faces, std::span<const Edge> edges);
   void add(std::span<const std::uint32_t> set, std::size_t sets);
-  void find_rounds();
+  void find_curved_neighbors();
 
   std::vector<Entity> entities_;
   std::vector<std::uint32_t> first_ = {0, 0};  ///< (sets + 1) where each set begins in numbers_
   std::vector<std::uint32_t> numbers_;         ///< entity numbers, set after set
-  std::vector<std::uint32_t> first_round_;     ///< (entities + 1) where each plane's rounds begin in rounds_
-  std::vector<std::uint32_t> rounds_;          ///< entity numbers, plane after plane
+  std::vector<std::uint32_t> first_neighbor_;  ///< (entities + 1) where each plane's begin in neighbors_
+  std::vector<std::uint32_t> neighbors_;       ///< entity numbers, plane after plane
 };
 
 }  // namespace verisim

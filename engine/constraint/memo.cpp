@@ -9,7 +9,7 @@
 namespace verisim {
 namespace {
 
-constexpr std::uint32_t kNone = PairMap::kAbsent - 1;  ///< "recognized: nothing"; more than any constraint's number
+constexpr std::uint32_t kNone = PairMap::kAbsent - 1;  ///< "recognized: none"; larger than any constraint's number
 
 bool is_edge(const Entity& e) {
   return std::visit(
@@ -18,8 +18,7 @@ bool is_edge(const Entity& e) {
 
 constexpr int kRanks = 4;
 
-/// Faces before edges, lower kinds before `other`: what stays when candidates are merged or more than there is room
-/// for.
+/// Priority of a candidate when candidates are merged or too many: faces before edges, `other` last.
 int rank(const Constraint& c, const Entity& a, const Entity& b) {
   if (c.kind == ConstraintKind::other) return kRanks - 1;
   return int{is_edge(a)} + int{is_edge(b)};
@@ -37,8 +36,8 @@ ConstraintMemo::ConstraintMemo(const EntitySets& a, const EntitySets& b, Reducti
       known_(std::min(8 * limits.constraints, a.entities().size() * b.entities().size())),
       candidates_(pairs_.capacity() + 1),
       constraints_(std::min({limits.constraints, a.entities().size() * b.entities().size(), std::size_t{65535}})),
-      rounds_of_(constraints_.size()),
-      rounds_(2 * constraints_.size()) {
+      gates_of_(constraints_.size()),
+      gates_(2 * constraints_.size()) {
   VERISIM_ASSERT(is_not_negative(tolerances.clearance_relative_max));
   VERISIM_ASSERT(is_not_negative(tolerances.interference_max));
   VERISIM_ASSERT(is_not_negative(tolerances.half_angle_difference_max));
@@ -79,12 +78,15 @@ Candidates ConstraintMemo::candidates_of(FeatureSetId a, FeatureSetId b) {
   return found;
 }
 
-void ConstraintMemo::add(Candidates& found, std::uint32_t constraint) const {
-  if (found.count == Candidates::kMax) return;
+void ConstraintMemo::add(Candidates& found, std::uint32_t constraint) {
   if (reduction_ == Reduction::common_freedom) {
     for (std::size_t i = 0; i < found.count; ++i) {
       if (same_axes(constraints_[found.constraint[i]], constraints_[constraint])) return;
     }
+  }
+  if (found.count == Candidates::kMax) {
+    ++counts_.overflows;
+    return;
   }
   found.constraint[found.count++] = static_cast<std::uint16_t>(constraint);
 }
@@ -105,33 +107,33 @@ std::uint32_t ConstraintMemo::number_of(std::uint32_t entity_a, std::uint32_t en
   }
   if (known_.size() < known_.capacity()) known_.insert(entity_a, entity_b, number);
   if (number != kNone && c.kind == ConstraintKind::planar && reduction_ == Reduction::common_freedom) {
-    find_rounds(number, entity_a, entity_b);
+    find_gates(number, entity_a, entity_b);
   }
   return number;
 }
 
-/// What the round faces and rims at both planes are to each other.
-void ConstraintMemo::find_rounds(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b) {
-  Stretch rounds{rounds_known_, 0};
-  for (const std::uint32_t round_a : a_->rounds_at(entity_a)) {
-    for (const std::uint32_t round_b : b_->rounds_at(entity_b)) {
+/// Finds the gates of a planar constraint among the curved faces and rims at both planes.
+void ConstraintMemo::find_gates(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b) {
+  Range gates{gates_known_, 0};
+  for (const std::uint32_t round_a : a_->curved_neighbors(entity_a)) {
+    for (const std::uint32_t round_b : b_->curved_neighbors(entity_b)) {
       const std::uint32_t number = number_of(round_a, round_b);
-      if (number != kNone && hands_over(constraints_[planar], constraints_[number])) add_round(rounds, number);
+      if (number != kNone && is_gated_by(constraints_[planar], constraints_[number])) add_gate(gates, number);
     }
   }
-  rounds_of_[planar] = rounds;
+  gates_of_[planar] = gates;
 }
 
-void ConstraintMemo::add_round(Stretch& rounds, std::uint32_t round) {
-  for (std::uint32_t i = rounds.first; i < rounds_known_; ++i) {
-    if (same_axes(constraints_[rounds_[i]], constraints_[round])) return;
+void ConstraintMemo::add_gate(Range& gates, std::uint32_t round) {
+  for (std::uint32_t i = gates.first; i < gates_known_; ++i) {
+    if (same_axes(constraints_[gates_[i]], constraints_[round])) return;
   }
-  if (rounds_known_ == rounds_.size()) {
+  if (gates_known_ == gates_.size()) {
     ++counts_.overflows;
     return;
   }
-  rounds_[rounds_known_++] = static_cast<std::uint16_t>(round);
-  ++rounds.count;
+  gates_[gates_known_++] = static_cast<std::uint16_t>(round);
+  ++gates.count;
 }
 
 }  // namespace verisim

@@ -1,11 +1,11 @@
-// Memoized recognition between the feature sets of two bodies: what two voxels are to each other, found once.
+// Memoized recognition between the feature sets of two bodies: each pair of sets is recognized once.
 //
-// Source: dissertation section 6.4.2. One memo per pair of bodies (per collision link). Key: the pair of set ids;
-// value: the constraints recognized between the two sets, none included (that is remembered too). Each constraint is
-// stored once, however many pairs of sets lead to it, so that what depends on the pose can be kept per constraint.
+// Source: dissertation section 6.4.2. One memo per pair of bodies (per collision link). Key: the pair of set ids.
+// Value: the constraints recognized between the two sets, also if there are none. Each constraint is stored once,
+// however many pairs of sets lead to it, so that pose-dependent state can be kept per constraint.
 //
-// Everything is allocated when the memo is made. Its room is what the two bodies can need, up to stated bounds; when a
-// bound is reached, results are found anew each time (`overflows` counts them), never lost or mixed up.
+// All memory is allocated at construction, for what the two bodies can need up to stated bounds. Beyond a bound,
+// results are computed anew each time and counted in `overflows`; they stay correct.
 #pragma once
 
 #include <array>
@@ -24,29 +24,29 @@ namespace verisim {
 
 struct MemoLimits {
   std::size_t pairs = 16384;       ///< of set ids; 60 bytes each
-  std::size_t constraints = 4096;  ///< 250 bytes each, with what a frame keeps of them
+  std::size_t constraints = 4096;  ///< 250 bytes each, with their state in a frame
 };
 
 /// Deterministic counts: the same in every run of the same input.
 struct MemoCounts {
   std::uint64_t hits = 0;
-  std::uint64_t misses_null = 0;        ///< recognized anew, and there was none
-  std::uint64_t misses_constraint = 0;  ///< recognized anew, and there was at least one
-  std::uint64_t recognitions = 0;       ///< pairs of entities looked at
-  std::uint64_t overflows = 0;          ///< misses that could not be remembered, constraints that found no room
+  std::uint64_t misses_null = 0;        ///< recognition found no constraint
+  std::uint64_t misses_constraint = 0;  ///< recognition found at least one
+  std::uint64_t recognitions = 0;       ///< pairs of entities that recognition tested
+  std::uint64_t overflows = 0;          ///< results and constraints that could not be stored
   [[nodiscard]] std::uint64_t misses() const { return misses_null + misses_constraint; }
 };
 
-/// What was recognized between two sets: numbers of constraints in the memo.
+/// The constraints recognized between two sets, as numbers in the memo.
 struct Candidates {
-  static constexpr std::size_t kMax = 8;  ///< of different constraints at one pair of voxels; the first ones stay
+  static constexpr std::size_t kMax = 8;  ///< different constraints at one pair of voxels; further ones are dropped
   std::array<std::uint16_t, kMax> constraint = {};
   std::uint8_t count = 0;
 };
 
 class ConstraintMemo {
  public:
-  /// Both sets of sets must outlive the memo. @pre the tolerances are finite and not negative
+  /// `a` and `b` must outlive the memo. @pre the tolerances are finite and not negative
   ConstraintMemo(const EntitySets& a, const EntitySets& b, Reduction reduction, const Tolerances& tolerances,
                  const MemoLimits& limits = {});
 
@@ -69,28 +69,27 @@ class ConstraintMemo {
     VERISIM_ASSERT(number < constraints_known_);
     return constraints_[number];
   }
-  /// Numbers of the round constraints that this one, if it is planar, hands over to (reduction.hpp): one for each pair
-  /// of axes. None under `exactly_one`.
-  [[nodiscard]] std::span<const std::uint16_t> hands_over_to(std::uint32_t number) const {
-    return {rounds_.data() + rounds_of_[number].first, rounds_of_[number].count};
+  /// Numbers of the axial constraints that gate this one if it is planar (reduction.hpp): one for each pair of axes.
+  /// None under `exactly_one`.
+  [[nodiscard]] std::span<const std::uint16_t> gates_of(std::uint32_t number) const {
+    return {gates_.data() + gates_of_[number].first, gates_of_[number].count};
   }
   [[nodiscard]] const MemoCounts& counts() const { return counts_; }
-  void count_hits(std::uint64_t more) { counts_.hits += more; }  ///< look-ups that the caller could spare
+  void count_hits(std::uint64_t more) { counts_.hits += more; }  ///< look-ups that the caller saved
 
   [[nodiscard]] std::size_t candidates_max() const { return candidates_.size(); }  ///< numbers that may occur
   [[nodiscard]] std::size_t constraints_max() const { return constraints_.size(); }
-  [[nodiscard]] std::size_t constraints_known() const { return constraints_known_; }
 
  private:
-  struct Stretch {
+  struct Range {
     std::uint32_t first = 0, count = 0;
   };
   std::uint32_t recognize_sets(FeatureSetId a, FeatureSetId b);
   Candidates candidates_of(FeatureSetId a, FeatureSetId b);
-  void add(Candidates& found, std::uint32_t constraint) const;
+  void add(Candidates& found, std::uint32_t constraint);
   std::uint32_t number_of(std::uint32_t entity_a, std::uint32_t entity_b);
-  void find_rounds(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b);
-  void add_round(Stretch& rounds, std::uint32_t round);
+  void find_gates(std::uint32_t planar, std::uint32_t entity_a, std::uint32_t entity_b);
+  void add_gate(Range& gates, std::uint32_t round);
 
   const EntitySets* a_;
   const EntitySets* b_;
@@ -98,12 +97,12 @@ class ConstraintMemo {
   Tolerances tolerances_;
   PairMap pairs_;                       ///< (set of A, set of B) -> candidates
   PairMap known_;                       ///< (entity of A, entity of B) -> constraint, or kNone
-  std::vector<Candidates> candidates_;  ///< one more than pairs_ holds: the last is for what finds no room
+  std::vector<Candidates> candidates_;  ///< one more than pairs_ can hold: the last is for overflows
   std::vector<Constraint> constraints_;
   std::size_t constraints_known_ = 0;
-  std::vector<Stretch> rounds_of_;     ///< by constraint: where those that it hands over to stand in rounds_
-  std::vector<std::uint16_t> rounds_;  ///< numbers of constraints
-  std::uint32_t rounds_known_ = 0;
+  std::vector<Range> gates_of_;       ///< by constraint: its gates in gates_
+  std::vector<std::uint16_t> gates_;  ///< numbers of constraints
+  std::uint32_t gates_known_ = 0;
   MemoCounts counts_;
 };
 

@@ -1,7 +1,7 @@
 // A function of two arguments that is chosen by the types of both (a multi-method) over the closed variant Entity.
 //
-// Source: dissertation chapter 7, whose engine did it with Boost.Variant, a class template and its specializations.
-// Here a recognizer is a struct, and the list that it stands in is a type:
+// Source: dissertation chapter 7, whose engine used Boost.Variant and specializations of a class template. Here a
+// recognizer is a struct, and the list of recognizers is a type:
 //
 //     struct CircleCylinder {                       // recognize/circle_cylinder.hpp
 //       using First = Circle;
@@ -12,8 +12,8 @@
 //     };
 //     using Recognizers = RecognizerList<PlanePlane, CircleCylinder, ...>;          // recognizers.hpp
 //
-// All decided by the compiler: a recognizer of (First, Second) also serves (Second, First), with the sides swapped;
-// a pair recognized twice, in either order, does not compile; a pair without recognizer costs one look into a table.
+// Decided at compile time: a recognizer of (First, Second) also serves (Second, First), with the sides swapped. A pair
+// with two recognizers, in either order, does not compile. A pair without one costs a table look-up.
 //
 // Cost of a pair: one table look-up and one indirect call, as std::visit over two variants. No allocation.
 #pragma once
@@ -32,20 +32,6 @@ namespace verisim {
 template <typename Shape>
 struct TypeOf {
   using type = Shape;
-};
-
-/// The alternatives of a variant of Bounded shapes, by number.
-template <typename Variant>
-struct Shapes;
-template <typename... Shape>
-struct Shapes<std::variant<Bounded<Shape>...>> {
-  static constexpr std::size_t kCount = sizeof...(Shape);
-  template <typename Wanted>
-  static constexpr std::size_t index_of() {
-    std::size_t index = 0;
-    (void)((std::is_same_v<Wanted, Shape> || (++index, false)) || ...);
-    return index;
-  }
 };
 
 namespace recognizing {
@@ -87,7 +73,7 @@ struct RecognizerList {
 
 namespace recognizing {
 
-/// Can these two be a constraint, by size and role? The pair in either order.
+/// True if a pair fits by size and role, in either order.
 template <typename List, typename A, typename B>
 [[nodiscard]] inline bool match(const Bounded<A>& a, const Bounded<B>& b, const Tolerances& tolerances) {
   using Recognizer = typename List::template For<A, B>;
@@ -108,7 +94,7 @@ template <typename List, typename A, typename B>
   }
 }
 
-/// What is known to be alternative I: std::get would ask once more.
+/// Alternative I of a variant without the check of std::get.
 template <std::size_t I, typename Variant>
 [[nodiscard]] inline const auto& known_to_be(const Variant& v) {
   const auto* alternative = std::get_if<I>(&v);
@@ -119,7 +105,7 @@ template <std::size_t I, typename Variant>
 template <typename Variant>
 using Cell = Constraint (*)(const Variant&, const Variant&, const Tolerances&);
 
-/// What stands in one cell of the matrix: a function, or nullptr where nothing is recognized.
+/// One cell of the matrix: a function, or nullptr where nothing is recognized.
 template <typename List, typename Variant, std::size_t I, std::size_t J>
 constexpr Cell<Variant> cell() {
   using A = decltype(std::variant_alternative_t<I, Variant>::shape);

@@ -8,6 +8,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 #include "engine/constraint/recognition.hpp"
 #include "engine/constraint/recognizers.hpp"
 
@@ -54,7 +55,7 @@ Set one_of_each(bool hole) {
   const Face cylinder{Cylinder{o, z, x, radius, hole}, {}, {}, 0, {}};
   Edge rim;
   rim.curve = Circle{o, z, x, radius};
-  rim.t_range = {0, 6.283185307179586};
+  rim.t_range = {0, pinned::kFullTurn};
   rim.faces = {0};
   return {std::get<Bounded<Circle>>(entity_of(rim, {&cylinder, 1})),
           std::get<Bounded<Cylinder>>(bounded(cylinder.surface)),

@@ -1,9 +1,9 @@
 // Table 7.1 of the dissertation, measured again: time per pair of entities against how much the engine recognizes.
 //
-// The published engine had five types of entities (circle, cylinder, cone, plane, sphere) and six recognizers; which of
-// them it held was chosen when it was compiled, and 20 choices were timed. Here all 64 are compiled and timed in one
-// run (recognition_table.cpp: one function per choice, made by the same multi-method as the engine's own). The task is
-// theirs: two sets with one entity of each type, all 25 pairs, the full result by value. No allocation.
+// The published engine had five types of entities (circle, cylinder, cone, plane, sphere) and six recognizers. A choice
+// of recognizers was made at compile time, and 20 choices were timed. Here all 64 choices are compiled and timed in one
+// run (one function per choice, made by the engine's own multi-method). The task is the published one: two sets with
+// one entity of each type, all 25 pairs, the full result by value. No allocation.
 #pragma once
 
 #include <array>
@@ -42,8 +42,8 @@ struct RecognitionTable {
 /// Names of the six published recognizers in the order of the bits.
 [[nodiscard]] const std::array<const char*, 6>& recognizer_names();
 
-/// Measures all rows, in turns, `rounds` times, and keeps each row's least time: what disturbs a measurement only
-/// lengthens it. Every row's results are checked against the engine's own. Reads the wall clock.
+/// Measures all rows in turn, `rounds` times, and keeps each row's shortest time, because disturbances only lengthen
+/// times. Every row's results are checked against the engine's own. Reads the wall clock.
 /// Takes about 65 x rounds x ms_per_row. @pre rounds > 0, ms_per_row > 0
 [[nodiscard]] RecognitionTable measure_recognition_table(int rounds = 15, double ms_per_row = 1);
 

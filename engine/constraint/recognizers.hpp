@@ -1,4 +1,4 @@
-// Which pairs of entities give a constraint: the matrix, and the list that it is checked against.
+// The matrix of recognizers: which pairs of entity types give a constraint. The compiler checks it against the list.
 //
 // To add a pair: (1) recognize/NAME.hpp, one struct (multi_method.hpp shows its shape); (2) its include and its place
 // in the list below, and its cell in the drawing; (3) its test. The compiler compares list and drawing.
@@ -28,9 +28,9 @@ using Recognizers =
                    CircleCone, SphereCylinder, SphereCone, SpherePlane, CylinderPlane, LinePlane>;
 
 /// Rows and columns in the order of Entity. Letters: P planar, C cylindrical, K conical, S spherical, A annular,
-/// O other; '.' the mirrored cell says it; '-' none, on purpose:
+/// O other; '.' see the mirrored cell; '-' none, on purpose:
 ///   cone on plane, cone on cylinder, torus on anything but a torus: contact along a line or at a point that moves with
-///     the pose, so there is no axis or centre to keep; the voxel answer stands.
+///     the pose, so there is no axis or centre to keep; the voxels' force stands.
 ///   edges on edges (but circles): two curves cross at a point and press along the normal to both, which turns with the
 ///     pose.
 ///   line on round faces: a straight edge touches them at points, and the faces beside it are in the set anyway.

@@ -16,8 +16,8 @@ Vector3d direction_in_a(const Constraint& c, Side side, const Pose& X_AB) {
 /// From B towards A. Two planes: midway between B's normal out of B and A's normal into A, so that neither body is
 /// preferred; they are opposed, or alpha is 0.
 Vector3d constant_normal(const Constraint& c, const Pose& X_AB) {
-  if (c.guide == Side::a) return -c.a.direction;
-  if (c.guide == Side::b) return X_AB.rotation * c.b.direction;
+  if (c.normal_source == Side::a) return -c.a.direction;
+  if (c.normal_source == Side::b) return X_AB.rotation * c.b.direction;
   const Vector3d sum = X_AB.rotation * c.b.direction - c.a.direction;
   const double length = sum.norm();
   if (length == 0) return Vector3d::Zero();
@@ -33,48 +33,27 @@ ActiveConstraint activate(const Constraint& c, const Pose& X_AB, double alpha) {
   active.kind = c.kind;
   if (c.kind == ConstraintKind::none) return active;
   active.field = c.field;
-  active.pushes_only = c.pushes_only;
+  active.unilateral = c.unilateral;
   active.alpha = alpha;
   if (c.field == NormalField::constant) {
     active.direction = constant_normal(c, X_AB);
     return active;
   }
-  active.point = point_in_a(c, c.guide, X_AB);
+  active.point = point_in_a(c, c.normal_source, X_AB);
   // A ball has no axis: that of the tube around it counts.
-  active.direction = direction_in_a(c, c.pairing == Pairing::point_axis ? opposite(c.guide) : c.guide, X_AB);
+  active.direction =
+      direction_in_a(c, c.pairing == Pairing::point_axis ? opposite(c.normal_source) : c.normal_source, X_AB);
   VERISIM_ASSERT(is_finite(active.point));
   VERISIM_ASSERT(c.field == NormalField::about_point || is_unit(active.direction));
   if (c.field == NormalField::about_cone) {
-    const double tangent = c.side(c.guide).detail;
+    const double tangent = c.side(c.normal_source).detail;
     const double cosine = 1 / std::sqrt(1 + tangent * tangent);
     const double outward = c.pin == Side::b ? 1 : -1;  // out of B's material: away from the axis if B is inside
     active.across = outward * cosine;
     active.along = -outward * cosine * tangent;
   }
-  if (c.field == NormalField::about_ring) active.along = c.side(c.guide).radius;
+  if (c.field == NormalField::about_ring) active.along = c.side(c.normal_source).radius;
   return active;
-}
-
-Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3d& x, const Vector3d& f, double alpha) {
-  VERISIM_ASSERT(is_finite(c));
-  VERISIM_ASSERT(is_unit(v));
-  VERISIM_ASSERT(is_finite(x));
-  VERISIM_ASSERT(is_finite(f));
-  VERISIM_ASSERT(is_fraction(alpha));
-  ActiveConstraint axis;
-  axis.kind = ConstraintKind::cylindrical;
-  axis.field = NormalField::about_line;
-  axis.alpha = alpha;
-  axis.point = c;
-  axis.direction = v;
-  return restore(axis, x, f);
-}
-
-Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha) {
-  VERISIM_ASSERT(is_unit(n));
-  VERISIM_ASSERT(is_finite(f));
-  VERISIM_ASSERT(is_fraction(alpha));
-  return restore_along(n, f, alpha, /*pushes_only=*/true);
 }
 
 }  // namespace verisim

@@ -1,5 +1,5 @@
-// How nearly two entities must match in size to be recognized as a constraint. Poses play no part here: what depends
-// on them is alignment (alignment.hpp), and is judged anew in every frame.
+// Tolerances of recognition: how closely two entities must match in size to give a constraint. Recognition does not
+// depend on the pose; alignment does (alignment.hpp).
 #pragma once
 
 namespace verisim {
@@ -9,7 +9,7 @@ struct Tolerances {
   /// same bound.
   double clearance_relative_max = 0.15;
   /// A pin may be larger than its hole by this much [m]: rounding of model files, far below any press fit (H7/p6 at
-  /// 3 mm: 1e-6). What has true interference is no pair: freeing its sliding would press it in without force.
+  /// 3 mm: 1e-6). A press fit is no pair: to free its sliding would let it in without force.
   double interference_max = 1e-8;
   /// Difference of two cones' half angles [rad]: half a degree, one voxel of 4.5 mm over half a metre of flank.
   double half_angle_difference_max = 0.00873;

@@ -1,7 +1,7 @@
-// Broad phase: which pairs of bodies are near enough to be queried. FCL's dynamic AABB tree over one box per body.
+// Broad phase: the pairs of bodies that are near enough to be queried. FCL's dynamic AABB tree over one box per body.
 //
-// World coordinates. Pairs come out as (i, j), i < j, in ascending order, so that later sums have an order; pairs that
-// were declared uninteresting (two bodies that cannot move) never come out. update() and find() allocate nothing.
+// World coordinates. Pairs are (i, j), i < j, in ascending order, so that later sums have an order. Pairs of two bodies
+// that cannot move are left out. find() allocates nothing.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace verisim {
 
 struct BroadPhaseBody {
   Vector3d center_B;  ///< m, of the box around the body, body coordinates
-  Vector3d half_B;    ///< m, half sides, grown by what the narrow phase may reach beyond the surface
+  Vector3d half_B;    ///< m, half sides, grown by the reach of the narrow phase beyond the surface
   bool can_move;
 };
 

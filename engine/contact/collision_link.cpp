@@ -9,7 +9,7 @@
 namespace verisim {
 namespace {
 
-/// Of the budget that is left, so much is used: W changes within a step, the rule holds for frozen W.
+/// Fraction of the budget that is used: the rule assumes a constant W, but W changes within a step.
 constexpr double kSafety = 0.8;
 
 /// Upper bound of the largest eigenvalue of M^-1 W: the Frobenius norm of M^-1/2 W M^-1/2 = sqrt(trace((M^-1 W)^2)).
@@ -58,7 +58,6 @@ void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& sec
 
 void CollisionLink::clear() {
   contacts_.size = 0;
-  on_first_ = on_second_ = LinkSide();
   depth_max_ = stiffness_ = 0;
 }
 
@@ -68,13 +67,13 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
   const Pose& X_WP = first_is_map_ ? X_W2 : X_W1;
   const Pose X_MP = X_WM.inverse() * X_WP;
   if (map_mesh_ != nullptr)
-    verisim::query(*map_mesh_, *points_mesh_, X_MP, map_->origin, contacts_);
+    verisim::query(*map_mesh_, *points_mesh_, X_MP, map_->origin, contacts_, cost);
   else
     verisim::query(*map_, *shell_, X_MP, contacts_, cost);
 }
 
-void CollisionLink::stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
-                            double dt) {
+void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
+                                     double dt) {
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(is_not_negative(parameters.stiffness_max));
   VERISIM_ASSERT(is_not_negative(parameters.damping_ratio));
@@ -114,35 +113,37 @@ Twist CollisionLink::relative_twist(const LinkBody& first, const LinkBody& secon
 void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
                             double dt) {
   if (contacts_.size == 0) return;
-  stiffen(first, second, parameters, dt);
+  choose_stiffness(first, second, parameters, dt);
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
-void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices) {
+void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices, LinkSides& sides) {
+  sides = LinkSides();
   if (contacts_.size == 0) return;
-  share_out(first, second, sum(contacts_, about_), with_matrices);
+  give_to_both(first, second, sum(contacts_, about_), with_matrices, sides);
 }
 
 void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
-                                    double dt) {
+                                    double dt, LinkSides& sides) {
+  sides = LinkSides();
   if (contacts_.size == 0) return;
-  stiffen(first, second, parameters, dt);
+  choose_stiffness(first, second, parameters, dt);
   const Twist relative = relative_twist(first, second);
-  share_out(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true);
+  give_to_both(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true, sides);
 }
 
-void CollisionLink::share_out(const LinkBody& first, const LinkBody& second, const ContactSum& total,
-                              bool with_matrices) {
+void CollisionLink::give_to_both(const LinkBody& first, const LinkBody& second, const ContactSum& total,
+                                 bool with_matrices, LinkSides& sides) {
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
-  LinkSide& on_points = first_is_map_ ? on_second_ : on_first_;
-  LinkSide& on_map = first_is_map_ ? on_first_ : on_second_;
+  LinkSide& on_points = first_is_map_ ? sides.second : sides.first;
+  LinkSide& on_map = first_is_map_ ? sides.first : sides.second;
   const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
   const Vector3d arm = points.p_WC - map.p_WC;
 
   depth_max_ = total.depth_max;
   on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
-  on_map.wrench = {-on_points.wrench.force, -(on_points.wrench.torque + arm.cross(on_points.wrench.force))};
+  on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
   if (!with_matrices) return;
 
   const Matrix6d W_points = rotated(W_, R_WM);

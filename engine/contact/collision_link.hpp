@@ -1,9 +1,9 @@
-// One CollisionLink per pair of bodies: finds their contacts, lets others act on each contact's force, and sums them
-// (dissertation sections 6.4.2 and 8.5: detection split from response).
+// One CollisionLink per pair of bodies. It finds their contacts and sums the contacts' forces. In between a hybrid
+// method may change each contact (dissertation sections 6.4.2 and 8.5: detection is separate from response).
 //
-// Names: the pair is (first, second) in the order in which the scenario added them. One of the two provides the points
-// (the one with fewer, the second if equal), the other the voxmap; contact lists live in the body coordinates of the
-// voxmap's body, relative to its grid origin. What leaves the link is in world coordinates, on the second by the first.
+// The pair is (first, second) in the order in which the scenario added the bodies. One provides the points (the one
+// with fewer, the second if equal), the other the voxmap. Contact lists are in the body coordinates of the voxmap's
+// body, relative to its grid origin. Results are in world coordinates.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@
 
 namespace verisim {
 
-/// What the link needs to know of a body in this frame.
+/// State of a body in this frame.
 struct LinkBody {
   Pose X_WB;
   Vector3d p_WC;          ///< centre of mass
   Twist twist;            ///< of the centre of mass
   Matrix6d inverse_mass;  ///< world coordinates; zero for a body that does not move
-  double budget = 0;  ///< of the stability bound of 4 that this body leaves to this link; unused if it does not move
+  double budget = 0;      ///< part of the stability budget of 4 for this link; unused if the body does not move
 };
 
 struct PenaltyParameters {
@@ -31,7 +31,7 @@ struct PenaltyParameters {
   bool stabilize = true;        ///< apply the stability rule of penalty.hpp
 };
 
-/// One body's side of the response.
+/// The response on one body.
 struct LinkSide {
   Wrench wrench;                          ///< on the body, about its centre of mass, world coordinates
   Matrix6d stiffness = Matrix6d::Zero();  ///< K = k W about the centre of mass, world
@@ -39,11 +39,15 @@ struct LinkSide {
   Vector6d drift = Vector6d::Zero();      ///< K times the other body's twist at this centre of mass
 };
 
+struct LinkSides {
+  LinkSide first, second;
+};
+
 class CollisionLink {
  public:
   /// Both must outlive the link. @pre both are voxelized
   CollisionLink(const VoxelBody& first, const VoxelBody& second);
-  /// From now on contacts are found by triangle against triangle, at most kMeshContactsMax.
+  /// Switches detection to triangles against triangles, with at most kMeshContactsMax contacts.
   void find_by_triangles(const MeshTree& first, const MeshTree& second);
   static constexpr std::size_t kMeshContactsMax = 16384;
 
@@ -55,29 +59,31 @@ class CollisionLink {
   // Of both parts: @pre dt is finite and above 0; stiffness_max and damping_ratio are finite and not negative; inverse
   // masses are symmetric. Where there is no contact, nothing is asked.
 
-  /// Response, part one: stiffness by the stability rule and a penalty force for every contact.
+  /// Response, part one: sets the stiffness by the stability rule and the penalty force of every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
-  /// Response, part two: sums what the contacts' forces now are; with matrices, also stiffness, damping and drift.
-  void sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices);
-  /// Both parts in one, with matrices, where all that acts on contacts has acted on their normals: no force of a single
-  /// contact is kept.
-  void respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
+  /// Response, part two: sums what the contacts' forces now are; with matrices, also stiffness, damping and drift, else
+  /// these are zero.
+  void sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices, LinkSides& sides);
+  /// Both parts in one pass, with matrices, if methods have changed normals only. Forces of single contacts are not
+  /// stored.
+  void respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt,
+                       LinkSides& sides);
 
-  [[nodiscard]] const LinkSide& on_first() const { return on_first_; }
-  [[nodiscard]] const LinkSide& on_second() const { return on_second_; }
   [[nodiscard]] double depth_max() const { return depth_max_; }  ///< m
   [[nodiscard]] double stiffness() const { return stiffness_; }  ///< N/m per contact, as the rule allowed
   void clear();                                                  ///< no contact in this frame
 
-  /// Is the first body the one with the voxmap?
+  /// True if the first body provides the voxmap.
   [[nodiscard]] bool first_is_map() const { return first_is_map_; }
 
  private:
-  /// Finds W_, stiffness_ and damping_.
-  void stiffen(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
-  /// Of the points' body against the map's, at the centre of the points' body, axes of the map's.
+  /// Sets W_, stiffness_ and damping_.
+  void choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
+  /// Twist of the points' body relative to the map's, at the centre of the points' body, axes of the map's.
   [[nodiscard]] Twist relative_twist(const LinkBody& first, const LinkBody& second) const;
-  void share_out(const LinkBody& first, const LinkBody& second, const ContactSum& total, bool with_matrices);
+  /// Transforms the sum, which is on the points' body in axes of the map's, into both sides of the response.
+  void give_to_both(const LinkBody& first, const LinkBody& second, const ContactSum& total, bool with_matrices,
+                    LinkSides& sides);
 
   const Voxmap* map_;
   const Pointshell* shell_;
@@ -88,7 +94,6 @@ class CollisionLink {
   Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
   Vector3d about_ = Vector3d::Zero();
   double stiffness_ = 0, damping_ = 0, depth_max_ = 0;
-  LinkSide on_first_, on_second_;
 };
 
 }  // namespace verisim

@@ -79,7 +79,8 @@ std::vector<fcl::Contactd> without_depths_around_edges(const std::vector<fcl::Co
 
 }  // namespace
 
-void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts) {
+void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts,
+           QueryCost& cost) {
   contacts.size = 0;
   if (!X_AB.position.allFinite() || !X_AB.rotation.coeffs().allFinite()) return;
   VERISIM_ASSERT(is_unit(X_AB.rotation));
@@ -95,9 +96,13 @@ void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3
   result.getContacts(found);
   found = without_depths_around_edges(found);
   std::sort(found.begin(), found.end(), comes_before);
-  for (std::size_t i = 0; i < found.size() && contacts.size < contacts.capacity(); ++i) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
     const bool is_shallowest = i == 0 || found[i].pos != found[i - 1].pos;
-    if (is_shallowest && static_cast<float>(found[i].penetration_depth) > 0) append(contacts, found[i], origin_A);
+    if (!is_shallowest || !(static_cast<float>(found[i].penetration_depth) > 0)) continue;
+    if (contacts.size < contacts.capacity())
+      append(contacts, found[i], origin_A);
+    else
+      ++cost.left_out;
   }
 }
 

@@ -1,11 +1,11 @@
-// Triangles against triangles by FCL: the comparator of the voxmap query (`contact = "fcl"`), with a pair's contacts in
-// the same list, so that response and everything behind it are the same.
+// Triangles against triangles by FCL: the comparator of the voxmap query (`contact = "fcl"`). Its contacts are in the
+// same list, so the response is the same.
 //
-// FCL's contact of two triangles that intersect (0.7, collision/intersect-inl.h): the deepest corner of one behind the
-// other's plane, of the two ways the less deep one; that corner, that plane's normal, that depth. At edges some of
-// these reach through the whole part to a face around the edge. So a contact counts only if it is the shallowest of one
-// of its two triangles, and of a corner's contacts only the shallowest does. A body that has swallowed the other
-// touches nothing.
+// FCL's contact of two intersecting triangles (0.7, collision/intersect-inl.h): the deepest corner of one triangle
+// behind the other's plane, with that plane's normal and that depth; of the two choices the less deep one. At edges
+// some depths reach through the whole part to a face around the edge. So a contact counts only if it is the shallowest
+// of one of its two triangles, and of a corner's contacts only the shallowest counts. A body inside another touches
+// nothing.
 //
 // Cost: milliseconds where query.hpp takes microseconds, and FCL allocates. Its answer is the same on every run.
 #pragma once
@@ -30,12 +30,13 @@ class MeshTree {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
   friend void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A,
-                    ContactList& contacts);
+                    ContactList& contacts, QueryCost& cost);
 };
 
 /// Fills `contacts`, sorted by place: points relative to `origin_A`, normals that push B, body coordinates of A.
-/// What goes beyond the list's capacity is left out. `point` and `slot` are the triangles' numbers in B and A.
-/// @pre origin_A is finite; the rotation is unit, if the pose is finite
-void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts);
+/// What goes beyond the list's capacity is left out and counted. `point` and `slot` are the triangles' numbers in B and
+/// A. @pre origin_A is finite; the rotation is unit, if the pose is finite
+void query(const MeshTree& a, const MeshTree& b, const Pose& X_AB, const Vector3d& origin_A, ContactList& contacts,
+           QueryCost& cost);
 
 }  // namespace verisim

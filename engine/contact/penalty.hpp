@@ -1,4 +1,4 @@
-// From a list of contacts to forces, and from forces to one wrench. Between the two, the hybrid method may act.
+// Penalty forces of a list of contacts, and their sum as one wrench. A hybrid method may change forces in between.
 //
 // Source: tangent-plane penalty force (McNeely 1999); stability: ORACLES section 2, discrete mass-spring-damper.
 //
@@ -30,7 +30,7 @@ struct ContactSum {
 };
 [[nodiscard]] ContactSum sum(const ContactList& contacts, const Vector3d& about);
 
-/// Both in one pass where nobody acts on single forces in between: these are not kept, nor rounded to single precision.
+/// apply_penalty and sum in one pass. Single forces are neither stored nor rounded to single precision.
 /// @pre stiffness >= 0, damping >= 0
 [[nodiscard]] ContactSum penalty_sum(const ContactList& contacts, const Vector3d& about, const Twist& velocity,
                                      double stiffness, double damping);

@@ -18,7 +18,7 @@ namespace {
 /// In a brick with or next to one with surface voxels the layer itself is that number (at kBand + 1, a lower bound of
 /// it). If the nearest surface voxel is k bricks away, k - 1 whole bricks lie between. And a cell beyond the grid is at
 /// least as far as the grid's cell nearest to it.
-std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
+std::int32_t steps_to_surface(const QueryConstants& f, const std::int32_t cell[3]) {
   std::int32_t clamped[3];
   for (int i = 0; i < 3; ++i) clamped[i] = clamp_cell(cell[i], f.cell_max[i]);
   const Layer clearance = f.brick_clearance[brick_of(f, clamped)];
@@ -28,7 +28,7 @@ std::int32_t steps_to_surface(const QueryFrame& f, const std::int32_t cell[3]) {
 
 /// The grid's border is one brick of outside: nothing beyond the inner box can be in contact. False for a centre that
 /// is not a number.
-bool meets_grid(const QueryFrame& f, const Center& g, double reach) {
+bool meets_grid(const QueryConstants& f, const Center& g, double reach) {
   const double low = kBrickSide - reach;
   const double high = reach + 1 - kBrickSide;
   return g.x > low && g.x < f.cell_max[0] + high && g.y > low && g.y < f.cell_max[1] + high && g.z > low &&
@@ -48,7 +48,7 @@ double reach_of(const Pointshell::Cluster& cluster, double per_metre) {
 /// centre's cell is outside and the nearest surface voxel more than ceil(reach) steps away, no step on the way to any
 /// point's cell meets one: all are outside, layer > 0. A cluster deep inside is not culled: steps_to_surface is 0
 /// there.
-bool surely_outside(const QueryFrame& f, const ClusterFrame& c, double reach) {
+bool surely_outside(const QueryConstants& f, const PlacedCluster& c, double reach) {
   return steps_to_surface(f, c.base) - 1 >= reach;  // more steps than ceil(reach), as both sides of it are whole
 }
 
@@ -72,59 +72,26 @@ ContactList::ContactList(std::size_t capacity) {
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
   check(a, b, X_AB, contacts);
   contacts.size = 0;
-  const QueryFrame frame = make_query_frame(a, b, X_AB);
+  const QueryConstants constants = make_query_constants(a, b, X_AB);
   const double per_metre = 1 / a.voxel_size;
-  std::array<ClusterFrame, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
+  std::array<PlacedCluster, 128> batch;  // small enough to stay in the first-level cache, large enough to hide the call
   std::size_t filled = 0;
   for (const Pointshell::Cluster& cluster : b.clusters) {
-    const Center center = center_of(frame, cluster);
+    const Center center = center_of(constants, cluster);
     const double reach = reach_of(cluster, per_metre);
-    if (!meets_grid(frame, center, reach)) continue;
+    if (!meets_grid(constants, center, reach)) continue;
     place(cluster, center, batch[filled]);
-    if (surely_outside(frame, batch[filled], reach)) continue;
+    if (surely_outside(constants, batch[filled], reach)) continue;
     batch[filled].near = reach <= kBrickSide;
     VERISIM_ASSERT(reach < 1 << 20);  // local coordinates stay within the range of kRounder
     VERISIM_ASSERT(cluster.end - cluster.begin <= static_cast<std::uint32_t>(kBrickCells));
     cost.points += cluster.end - cluster.begin;
     if (++filled < batch.size()) continue;
-    cost.candidates += append_contacts(frame, b, batch, contacts);
+    cost.candidates += append_contacts(constants, b, batch, contacts);
     filled = 0;
   }
-  cost.candidates += append_contacts(frame, b, {batch.data(), filled}, contacts);
+  cost.candidates += append_contacts(constants, b, {batch.data(), filled}, contacts);
   cost.clusters += b.clusters.size();
-}
-
-void query_plainly(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost) {
-  check(a, b, X_AB, contacts);
-  contacts.size = 0;
-  const QueryFrame f = make_query_frame(a, b, X_AB);
-  for (const Pointshell::Cluster& cluster : b.clusters) {
-    ClusterFrame c;
-    place(cluster, center_of(f, cluster), c);
-    for (std::uint32_t i = c.begin; i < c.end; ++i) {
-      const PointLocation p = locate(f, c, b.x[i], b.y[i], b.z[i]);
-      if (p.layer > 0) continue;
-      ++cost.candidates;
-      float n[3];
-      for (int r = 0; r < 3; ++r) {
-        n[r] = f.rotation[3 * r] * b.nx[i] + f.rotation[3 * r + 1] * b.ny[i] + f.rotation[3 * r + 2] * b.nz[i];
-      }
-      const float depth = depth_of(f, p, n[0], n[1], n[2]);
-      if (!(depth > 0)) continue;
-      const std::uint32_t k = contacts.size++;
-      contacts.point[k] = i;
-      contacts.slot[k] = p.slot;
-      contacts.x[k] = coordinate(f, c.base[0], p.local[0]);
-      contacts.y[k] = coordinate(f, c.base[1], p.local[1]);
-      contacts.z[k] = coordinate(f, c.base[2], p.local[2]);
-      contacts.nx[k] = n[0];
-      contacts.ny[k] = n[1];
-      contacts.nz[k] = n[2];
-      contacts.depth[k] = depth;
-    }
-  }
-  cost.clusters += b.clusters.size();
-  cost.points += b.size();
 }
 
 }  // namespace verisim

@@ -111,7 +111,8 @@ struct Located {
   Cells cells;
 };
 
-HWY_INLINE Located locate_points(const QueryFrame& f, const Pointshell& shell, const ClusterFrame& c, std::size_t i) {
+HWY_INLINE Located locate_points(const QueryConstants& f, const Pointshell& shell, const PlacedCluster& c,
+                                 std::size_t i) {
   const Triple p = load_points(shell.x, shell.y, shell.z, i);
   const Triple d = {hn::Sub(p.x, hn::Set(kF, c.center[0])), hn::Sub(p.y, hn::Set(kF, c.center[1])),
                     hn::Sub(p.z, hn::Set(kF, c.center[2]))};
@@ -126,7 +127,7 @@ HWY_INLINE Located locate_points(const QueryFrame& f, const Pointshell& shell, c
 }
 
 /// Slots of any points, looked up in the map's table of bricks.
-HWY_INLINE I slots_anywhere(const QueryFrame& f, const ClusterFrame& c, const Cells& cells) {
+HWY_INLINE I slots_anywhere(const QueryConstants& f, const PlacedCluster& c, const Cells& cells) {
   const auto in_grid = [&](I cell, int axis) {
     return clamped(hn::Add(cell, hn::Set(kI, c.corner[axis] - kRounderBits)), f.cell_max[axis]);
   };
@@ -144,7 +145,7 @@ struct Window {
   static constexpr std::int32_t kSide = 3;
   HWY_ALIGN std::int32_t first_slot[32] = {};  ///< x fastest; the last 5 serve lanes without a point
 
-  HWY_INLINE void open(const QueryFrame& f, const ClusterFrame& c) {
+  HWY_INLINE void open(const QueryConstants& f, const PlacedCluster& c) {
     const std::int32_t low[3] = {c.corner[0] >> kBrickShift, c.corner[1] >> kBrickShift, c.corner[2] >> kBrickShift};
     const bool within = low[0] >= 0 && low[1] >= 0 && low[2] >= 0 && low[0] + kRowRead <= f.bricks[0] &&
                         low[1] + kSide <= f.bricks[1] && low[2] + kSide <= f.bricks[2];
@@ -176,7 +177,7 @@ struct Window {
  private:
   static constexpr std::int32_t kRowRead = 4;  ///< bricks that copy_row reads
 
-  HWY_INLINE void copy(const QueryFrame& f, const std::int32_t low[3]) {
+  HWY_INLINE void copy(const QueryConstants& f, const std::int32_t low[3]) {
     const std::uint32_t* slice = f.brick_block + low[0] + low[1] * f.row + low[2] * f.slice;
     std::int32_t* slot = first_slot;
     for (int z = 0; z < kSide; ++z, slice += f.slice, slot += kSide * kSide) {
@@ -195,7 +196,7 @@ struct Window {
     }
   }
 
-  void copy_part(const QueryFrame& f, const std::int32_t low[3]) {
+  void copy_part(const QueryConstants& f, const std::int32_t low[3]) {
     std::int32_t* slot = first_slot;
     for (std::int32_t z = low[2]; z < low[2] + kSide; ++z) {
       for (std::int32_t y = low[1]; y < low[1] + kSide; ++y) {
@@ -214,7 +215,7 @@ struct Window {
 class Layers {
  public:
   Layers() = default;
-  HWY_INLINE Layers(const QueryFrame& f, const std::int32_t* slots)
+  HWY_INLINE Layers(const QueryConstants& f, const std::int32_t* slots)
       : bytes_(_mm_or_si128(_mm_or_si128(every_fourth<0>(f, slots), every_fourth<1>(f, slots)),
                             _mm_or_si128(every_fourth<2>(f, slots), every_fourth<3>(f, slots)))) {}
   [[nodiscard]] HWY_INLINE hn::Mask<Ints> not_outside() const {
@@ -224,7 +225,7 @@ class Layers {
 
  private:
   template <int first>
-  static HWY_INLINE __m128i every_fourth(const QueryFrame& f, const std::int32_t* slots) {
+  static HWY_INLINE __m128i every_fourth(const QueryConstants& f, const std::int32_t* slots) {
     const auto layer = [&](int lane) { return f.layers[static_cast<std::uint32_t>(slots[lane])]; };
     __m128i bytes = _mm_insert_epi8(_mm_setzero_si128(), layer(first), first);
     bytes = _mm_insert_epi8(bytes, layer(first + 4), first + 4);
@@ -239,7 +240,7 @@ class Layers {
  public:
   Layers() = default;
   /// Gathers whole aligned words (blocks have 512 bytes, so none reaches beyond the table) and shifts the byte up.
-  HWY_INLINE Layers(const QueryFrame& f, const std::int32_t* from) {
+  HWY_INLINE Layers(const QueryConstants& f, const std::int32_t* from) {
     using Unsigned = hn::RebindToUnsigned<Ints>;
     const Unsigned u;
     const I slots = hn::Load(kI, from);
@@ -298,7 +299,7 @@ struct Chunk {
   static constexpr std::size_t kFull = 64;
   static constexpr std::size_t kRoom = kFull + kBrickCells / kLanes + 1;
   struct Vector {
-    const ClusterFrame* cluster;
+    const PlacedCluster* cluster;
     std::size_t begin;  ///< its first point
     [[nodiscard]] HWY_INLINE hn::Mask<Ints> points() const { return hn::FirstN(kI, cluster->end - begin); }
   };
@@ -311,8 +312,8 @@ struct Chunk {
 
 /// First pass: the slots of a cluster's points.
 template <bool near>
-HWY_INLINE void find_slots(const QueryFrame& f, const Pointshell& shell, const ClusterFrame& c, const Window& window,
-                           Chunk& chunk) {
+HWY_INLINE void find_slots(const QueryConstants& f, const Pointshell& shell, const PlacedCluster& c,
+                           const Window& window, Chunk& chunk) {
   for (std::size_t i = c.begin; i < c.end; i += kLanes) {
     const Located at = locate_points(f, shell, c, i);
     I slots;
@@ -333,7 +334,7 @@ struct Found {
 };
 
 /// Second pass: the layers, and which vectors have candidates.
-HWY_INLINE Found find_candidates(const QueryFrame& f, Chunk& chunk) {
+HWY_INLINE Found find_candidates(const QueryConstants& f, Chunk& chunk) {
   Found found;
   for (std::size_t k = 0; k < chunk.size; ++k) {
     const Layers layers(f, chunk.slots[k]);
@@ -367,10 +368,10 @@ HWY_INLINE Columns columns_of(ContactList& list) {
 }
 
 /// Third pass: writes those candidates of a vector that have a depth above zero to row `end` and on. Returns how many.
-HWY_INLINE std::size_t append_touching(const QueryFrame& f, const Pointshell& shell, const Chunk& chunk, std::size_t k,
-                                       const Columns& out, std::size_t end) {
+HWY_INLINE std::size_t append_touching(const QueryConstants& f, const Pointshell& shell, const Chunk& chunk,
+                                       std::size_t k, const Columns& out, std::size_t end) {
   const Chunk::Vector& v = chunk.vectors[k];
-  const ClusterFrame& c = *v.cluster;
+  const PlacedCluster& c = *v.cluster;
   const F voxel_size = hn::Set(kF, f.voxel_size);
   const Located at = locate_points(f, shell, c, v.begin);  // once more: as quick as to have stored it
   const Triple n = rotate(f.rotation, load_points(shell.nx, shell.ny, shell.nz, v.begin));
@@ -394,7 +395,7 @@ HWY_INLINE std::size_t append_touching(const QueryFrame& f, const Pointshell& sh
 }
 
 /// Second and third pass. Empties the chunk and returns the number of candidates that were in it.
-std::size_t finish(const QueryFrame& f, const Pointshell& shell, Chunk& chunk, ContactList& contacts) {
+std::size_t finish(const QueryConstants& f, const Pointshell& shell, Chunk& chunk, ContactList& contacts) {
   const Found found = find_candidates(f, chunk);
   const Columns columns = columns_of(contacts);
   std::size_t end = contacts.size;
@@ -406,8 +407,8 @@ std::size_t finish(const QueryFrame& f, const Pointshell& shell, Chunk& chunk, C
   return found.candidates;
 }
 
-std::uint64_t append_contacts_simd(const QueryFrame& f, const Pointshell& shell, std::span<const ClusterFrame> clusters,
-                                   ContactList& contacts) {
+std::uint64_t append_contacts_simd(const QueryConstants& f, const Pointshell& shell,
+                                   std::span<const PlacedCluster> clusters, ContactList& contacts) {
   Chunk chunk;
   std::uint64_t candidates = 0;
   // Each window is opened one cluster ahead: loading it whole has to wait until its rows have left the CPU's store
@@ -434,9 +435,9 @@ namespace verisim {
 
 HWY_EXPORT(append_contacts_simd);
 
-std::uint64_t append_contacts(const QueryFrame& frame, const Pointshell& shell, std::span<const ClusterFrame> clusters,
-                              ContactList& contacts) {
-  return HWY_DYNAMIC_DISPATCH(append_contacts_simd)(frame, shell, clusters, contacts);
+std::uint64_t append_contacts(const QueryConstants& constants, const Pointshell& shell,
+                              std::span<const PlacedCluster> clusters, ContactList& contacts) {
+  return HWY_DYNAMIC_DISPATCH(append_contacts_simd)(constants, shell, clusters, contacts);
 }
 
 }  // namespace verisim

@@ -10,7 +10,7 @@ namespace verisim {
 /// Looks up every point of the clusters and appends those in contact. Returns the number of candidates.
 /// query() sees to it that `contacts` has room for all points, that no cluster has more than kBrickCells of them, and
 /// that none has a local coordinate beyond 2^22.
-std::uint64_t append_contacts(const QueryFrame& frame, const Pointshell& shell, std::span<const ClusterFrame> clusters,
-                              ContactList& contacts);
+std::uint64_t append_contacts(const QueryConstants& constants, const Pointshell& shell,
+                              std::span<const PlacedCluster> clusters, ContactList& contacts);
 
 }  // namespace verisim

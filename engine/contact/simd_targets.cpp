@@ -1,4 +1,4 @@
-// Which of Highway's targets the contact kernels run on. The choice is the process's: Highway keeps it in one place.
+// The choice of Highway's target for the contact kernels. It holds for the whole process: Highway stores it globally.
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -25,10 +25,6 @@ class ForwardingDevice : public Device {
   [[nodiscard]] double duration() const override { return inner_->duration(); }
   [[nodiscard]] double travel() const override { return inner_->travel(); }
   [[nodiscard]] bool driven() const override { return inner_->driven(); }
-  [[nodiscard]] Device& inner() { return *inner_; }
-
- protected:
-  [[nodiscard]] const Device& inner() const { return *inner_; }
 
  private:
   std::shared_ptr<Device> inner_;

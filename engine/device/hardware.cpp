@@ -4,7 +4,6 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
-#include "engine/device/forwarding.hpp"
 
 namespace verisim {
 namespace {
@@ -46,7 +45,6 @@ class HardwareDevice final : public Device {
     return source_ ? source_->travel() + std::sqrt(3.0) * description_.resolution : 0;
   }
   [[nodiscard]] bool driven() const override { return source_ != nullptr; }
-  void set_source(std::shared_ptr<Device> source) { source_ = std::move(source); }
 
  private:
   [[nodiscard]] Vector3d quantised(const Vector3d& p) const {
@@ -93,19 +91,6 @@ std::shared_ptr<Device> make_hardware(HardwareDescription description, std::shar
   if (!is_placement(d.home))
     fail(ErrorKind::input, "device '{}': its home pose is not finite with a unit quaternion", d.name);
   return std::make_shared<HardwareDevice>(std::move(description), std::move(source));
-}
-
-void drive(Device& device, std::shared_ptr<Device> source) {
-  VERISIM_ASSERT(source != nullptr);
-  Device* innermost = &device;
-  while (auto* filter = dynamic_cast<ForwardingDevice*>(innermost)) innermost = &filter->inner();
-  auto* hardware = dynamic_cast<HardwareDevice*>(innermost);
-  if (hardware == nullptr)
-    fail(ErrorKind::input, "'{}' is a source itself and cannot be driven; bind a hardware device", device.name());
-  if (hardware->driven())
-    fail(ErrorKind::input, "device '{}' is driven already by the scenario; drop the --bind or the scenario's source",
-         device.name());
-  hardware->set_source(std::move(source));
 }
 
 }  // namespace verisim

@@ -31,8 +31,5 @@ struct HardwareDescription {
 [[nodiscard]] std::shared_ptr<Device> make_scale(std::shared_ptr<Device> inner, double scale);
 /// Moves handle positions by `translation`. Error(input) unless it is finite. @pre inner is not null
 [[nodiscard]] std::shared_ptr<Device> make_translate(std::shared_ptr<Device> inner, const Vector3d& translation);
-/// Drives a hardware device made without a source. Error(input) if `device` is none or is driven already.
-/// @pre source is not null
-void drive(Device& device, std::shared_ptr<Device> source);
 
 }  // namespace verisim

@@ -1,5 +1,5 @@
 // A rigid body: constant mass properties and the state that an integrator advances. The state is that of the centre of
-// mass C, because Newton and Euler's equations are simplest there; the pose of the body coordinates B follows from it.
+// mass C, where the equations of Newton and Euler are simplest. The pose of the body coordinates B follows from it.
 #pragma once
 
 #include <string>
@@ -38,9 +38,9 @@ struct RigidBody {
   [[nodiscard]] bool is_finite() const;
 };
 
-/// A body of the given volume properties and density. The inertia's smallest principal value is raised to 1e-6 of the
-/// largest, so that a needle can still be integrated. Error(input) naming `name` if density, mass, centroid or inertia
-/// are not finite, or mass or a principal inertia are not positive (to 1e-6 of the largest).
+/// A body of the given volume properties [m^3, m, m^5] and density [kg/m^3]. The smallest principal inertia is raised
+/// to 1e-6 of the largest, so that a needle can be integrated. Error(input) naming `name` if density, mass, centroid or
+/// inertia are not finite, or mass or a principal inertia are not positive (to 1e-6 of the largest).
 [[nodiscard]] RigidBody make_body(const std::string& name, double volume, const Vector3d& centroid,
                                   const Matrix3d& inertia_per_density, double density);
 

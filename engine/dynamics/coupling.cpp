@@ -9,7 +9,8 @@
 namespace verisim {
 namespace {
 
-double share_of(double x) {
+/// Left side of the stability rule, x = dt sqrt(k / m).
+double budget_used_by(double x) {
   return x * x + 4 * x;
 }
 
@@ -30,7 +31,7 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   VERISIM_ASSERT(limits.torque_max > 0);
   const double inertia_min = smallest_eigenvalue(body.inertia_B);
   VERISIM_ASSERT(inertia_min > 0);
-  const double x_max = std::sqrt(4 + kCouplingShare) - 2;  // x^2 + 4x = kCouplingShare
+  const double x_max = std::sqrt(4 + kCouplingBudget) - 2;  // x^2 + 4x = kCouplingBudget
   const double bound = x_max * x_max / (dt * dt);
   Coupling c;
   c.stiffness = stabilize ? std::min(limits.stiffness_max, bound * body.mass) : limits.stiffness_max;
@@ -40,8 +41,8 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   c.torque_max = limits.torque_max;
   c.damping = 2 * std::sqrt(c.stiffness * body.mass);
   c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
-  c.share = std::max(share_of(dt * std::sqrt(c.stiffness / body.mass)),
-                     share_of(dt * std::sqrt(c.angular_stiffness / inertia_min)));
+  c.budget_used = std::max(budget_used_by(dt * std::sqrt(c.stiffness / body.mass)),
+                           budget_used_by(dt * std::sqrt(c.angular_stiffness / inertia_min)));
   return c;
 }
 
@@ -64,10 +65,6 @@ Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const W
 
 double coupling_energy(const Coupling& coupling, const CouplingForce& force) {
   return 0.5 * coupling.stiffness * force.d.squaredNorm() + 0.5 * coupling.angular_stiffness * force.e.squaredNorm();
-}
-
-double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target) {
-  return coupling_energy(coupling, coupling_force(coupling, body, target));
 }
 
 }  // namespace verisim

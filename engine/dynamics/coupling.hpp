@@ -1,17 +1,15 @@
-// Virtual coupling: a six-degree-of-freedom spring and damper between a held body and the pose where the handle wants
-// it (dissertation section 4.3.1, figure 4.3). It acts at the centre of mass, so that translation and rotation
-// decouple.
+// Virtual coupling: a 6-DoF spring and damper between a held body and its target, the pose that follows the handle
+// (dissertation section 4.3.1, figure 4.3). It acts at the centre of mass, where translation and rotation decouple.
 //
-// World coordinates W. The target moves with the handle: X_WT = X_WH X_HB with X_HB as it was when the body was
-// grasped.
+// World coordinates W. The target moves with the handle: X_WT = X_WH X_HB with X_HB as it was at the grasp.
 //   force  = k d + b (v_T - v_C)              d = p_T - p_C                    [m]
 //   torque = kappa e + B (omega_T - omega)    e = rotation vector of R_T R^T   [rad]
 // Critically damped: b = 2 sqrt(k m); B = 2 sqrt(kappa) I^(1/2), that is 2 sqrt(kappa I_i) about each principal axis.
-// Saturation: the sum of spring and damper is cut to force_max, torque_max (as vectors), as a clutch that slips would.
+// Saturation: the sum of spring and damper is limited to force_max and torque_max (as vectors), like a slipping clutch.
 //
-// Stability rule (ORACLES section 2: k dt^2/m + 2 b dt/m < 4). With x = dt sqrt(k/m) critical damping makes the left
-// side x^2 + 4x, the coupling's share of the budget of 4. It may take at most kCouplingShare = 2, the rest is for
-// contact: k <= (sqrt(6) - 2)^2 m/dt^2 = 0.202 m/dt^2, and the same for kappa with the smallest principal inertia.
+// Stability rule (ORACLES section 2: k dt^2/m + 2 b dt/m < 4, the stability budget). With x = dt sqrt(k/m) and critical
+// damping the left side is x^2 + 4x. The coupling may use at most kCouplingBudget = 2 of it and leaves the rest to
+// contacts: k <= (sqrt(6) - 2)^2 m/dt^2 = 0.202 m/dt^2, and the same for kappa with the smallest principal inertia.
 #pragma once
 
 #include <limits>
@@ -21,7 +19,7 @@
 
 namespace verisim {
 
-inline constexpr double kCouplingShare = 2;
+inline constexpr double kCouplingBudget = 2;  ///< of the stability budget of 4
 
 struct CouplingLimits {
   double stiffness_max = 300;                                   ///< N/m (maxStiffness)
@@ -30,7 +28,7 @@ struct CouplingLimits {
   double torque_max = std::numeric_limits<double>::infinity();  ///< N m (maxCouplingTorque)
 };
 
-/// Constants of one coupling: of a body, a step and limits.
+/// Constants of one coupling.
 struct Coupling {
   double stiffness = 0;                                         ///< k [N/m]
   double damping = 0;                                           ///< b [N s/m]
@@ -38,15 +36,15 @@ struct Coupling {
   Matrix3d angular_damping_B = Matrix3d::Zero();                ///< B in body axes [N m s/rad]
   double force_max = std::numeric_limits<double>::infinity();   ///< N
   double torque_max = std::numeric_limits<double>::infinity();  ///< N m
-  double share = 0;  ///< of the stability budget of 4, at most kCouplingShare when `stabilized`
+  double budget_used = 0;  ///< of the stability budget of 4; at most kCouplingBudget if stabilized
 };
 
-/// `stabilize`: apply the stability rule (explicit forces); a linearly implicit integrator needs none.
+/// @param stabilize  apply the stability rule, needed for explicit forces; a linearly implicit integrator needs none
 /// @pre dt is finite and above 0; the body has mass and inertia; stiffnesses are finite and not negative; the limits of
 /// force and torque are above 0
 [[nodiscard]] Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize);
 
-/// Where the handle wants the body, and how fast that place moves.
+/// Target pose of the body and its velocity.
 struct CouplingTarget {
   Vector3d p_WC;  ///< m, of the centre of mass
   Quaterniond R_WB;
@@ -66,12 +64,11 @@ struct CouplingForce {
 [[nodiscard]] CouplingForce coupling_force(const Coupling& coupling, const RigidBody& body,
                                            const CouplingTarget& target);
 
-/// What the damper, and the clutch that slips beyond force_max and torque_max, do together: `damper` as it is unless
-/// its sum with the spring exceeds a limit, then what leaves the sum at that limit, in the same direction.
+/// The wrench that damper and clutch add to the spring's. It is `damper`, unless the sum of both exceeds force_max or
+/// torque_max; then the sum is reduced to that limit, in the same direction.
 [[nodiscard]] Wrench damper_and_clutch(const Coupling& coupling, const Wrench& spring, const Wrench& damper);
 
 /// Energy stored in the springs [J].
 [[nodiscard]] double coupling_energy(const Coupling& coupling, const CouplingForce& force);
-[[nodiscard]] double coupling_energy(const Coupling& coupling, const RigidBody& body, const CouplingTarget& target);
 
 }  // namespace verisim

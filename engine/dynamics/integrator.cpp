@@ -16,7 +16,6 @@ void check(const RigidBody& body, const Loads& loads, double dt) {
   VERISIM_ASSERT(body.mass > 0);
   VERISIM_ASSERT(body.is_finite());
   VERISIM_ASSERT(is_unit(body.R_WB));
-  VERISIM_ASSERT(is_fraction(loads.contact_share));
   VERISIM_ASSERT(is_symmetric(loads.contact_stiffness));
   VERISIM_ASSERT(is_symmetric(loads.contact_damping));
 }
@@ -39,10 +38,10 @@ Wrench wrench_of(const Vector6d& column) {
 struct Motion {
   Vector6d middle;  ///< (u0 + u1) / 2: along it, force times displacement is exactly the change of kinetic energy
   Vector6d during;  ///< u1: along it the body moves
-  double turned;    ///< kinetic energy lost because I turns while the angular momentum stays
+  double turned;    ///< J, kinetic energy lost because I turns at constant angular momentum
 };
 
-/// Moves the body along `during` for dt. Angular momentum is kept while the orientation, and so I_W, changes.
+/// Moves the body with the velocity `during` for dt. Angular momentum is conserved while I_W changes.
 Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   const Vector6d before = stacked(body.v_C, body.omega);
   const Vector3d omega_star = during.tail<3>();
@@ -54,8 +53,8 @@ Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
 }
 
-/// What the step keeps of the potential energies: the coupling's, which now pulls with `pull`, and the shadow of
-/// `external` (whose own potential is linear). `shadow_dt`: dt if the step is velocity-first, else 0.
+/// The potential energy that the step conserves: the coupling's, with its force `pull`, and the shadow of `external`,
+/// whose own potential is linear. @param shadow_dt  dt if the step is velocity-first, else 0
 double potential(const RigidBody& body, const Loads& loads, const CouplingForce& pull, double shadow_dt) {
   const double energy = shadow_energy(loads.external, body, shadow_dt);
   if (loads.coupling == nullptr) return energy;
@@ -69,9 +68,9 @@ double potential_at_end(const RigidBody& body, const Loads& loads, double shadow
   return potential(body, loads, coupling_force(*loads.coupling, body, loads.target), shadow_dt);
 }
 
-/// Works of the loads, given the wrenches that were really applied. `energy_before`: their potential_at_start().
-StepWork account(const RigidBody& body, const Loads& loads, const Motion& motion, const Wrench& spring,
-                 const Wrench& damper, const Wrench& contact, double energy_before, double dt, double shadow_dt) {
+/// Works of the loads, given the wrenches that were applied. @param energy_before  potential_at_start()
+StepWork work_of_step(const RigidBody& body, const Loads& loads, const Motion& motion, const Wrench& spring,
+                      const Wrench& damper, const Wrench& contact, double energy_before, double dt, double shadow_dt) {
   StepWork work;
   const Vector6d half_way = dt * motion.middle;
   work.contact = contact;
@@ -98,25 +97,25 @@ ContactWork& ContactWork::operator+=(const ContactWork& other) {
   return *this;
 }
 
-double ContactWork::of(double share) const {
-  VERISIM_ASSERT(is_fraction(share));
-  return share == 1 ? all : (quadratic * share + linear) * share;
+double ContactWork::at(double scale) const {
+  VERISIM_ASSERT(is_fraction(scale));
+  return scale == 1 ? all : (quadratic * scale + linear) * scale;
 }
 
-double share_within(double budget, const ContactWork& work) {
-  VERISIM_ASSERT(!(budget < 0));  // of a run that diverges it may be no number at all
-  if (!(work.all > budget)) return 1;
+double passive_scale(double available, const ContactWork& work) {
+  VERISIM_ASSERT(!(available < 0));  // of a run that diverges it may be no number at all
+  if (!(work.all > available)) return 1;
   const double a = work.quadratic;
   const double b = work.linear;
   if (!(a > 0)) return 0;
-  const double share = (std::sqrt(b * b + 4 * a * budget) - b) / (2 * a);
-  return share > 0 ? std::min(share, 1.0) : 0;  // nor may this be: inf - inf
+  const double scale = (std::sqrt(b * b + 4 * a * available) - b) / (2 * a);
+  return scale > 0 ? std::min(scale, 1.0) : 0;  // nor may this be: inf - inf
 }
 
 namespace {
 
-/// What a wrench adds to the velocity within the step.
-Vector6d sped_up(const RigidBody& body, const Matrix3d& inertia_inverse, const Wrench& w, double dt) {
+/// Change of velocity by a wrench within the step.
+Vector6d velocity_change(const RigidBody& body, const Matrix3d& inertia_inverse, const Wrench& w, double dt) {
   return stacked(dt / body.mass * w.force, dt * (inertia_inverse * w.torque));
 }
 
@@ -133,33 +132,34 @@ ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads
   if (loads.coupling != nullptr) others += loads.coupling_at_start.spring;
   others += damper_of(loads);
   const Matrix3d inertia_inverse = body.inertia_inverse_W();
-  const Vector6d before_and_free = 2 * stacked(body.v_C, body.omega) + sped_up(body, inertia_inverse, others, dt);
+  const Vector6d before_and_free =
+      2 * stacked(body.v_C, body.omega) + velocity_change(body, inertia_inverse, others, dt);
   const Vector6d f = stacked(loads.contact);
-  const double quadratic = 0.5 * dt * f.dot(sped_up(body, inertia_inverse, loads.contact, dt));
+  const double quadratic = 0.5 * dt * f.dot(velocity_change(body, inertia_inverse, loads.contact, dt));
   const double linear = 0.5 * dt * f.dot(before_and_free);
   return {quadratic + linear, quadratic, linear};
 }
 
-StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt) {
+StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale) {
   check(body, loads, dt);
+  VERISIM_ASSERT(is_fraction(contact_scale));
   const double energy_before = potential_at_start(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
   const Wrench damper = damper_of(loads);
-  const double share = loads.contact_share;
-  const Wrench contact{share * loads.contact.force, share * loads.contact.torque};
+  const Wrench contact{contact_scale * loads.contact.force, contact_scale * loads.contact.torque};
   const Vector3d force = loads.external.force + contact.force + spring.force + damper.force;
   const Vector3d torque = loads.external.torque + contact.torque + spring.torque + damper.torque;
-  const Vector6d u1 = stacked(body.v_C, body.omega) + sped_up(body, body.inertia_inverse_W(), {force, torque}, dt);
+  const Vector6d u1 =
+      stacked(body.v_C, body.omega) + velocity_change(body, body.inertia_inverse_W(), {force, torque}, dt);
   const Motion motion = advance(body, u1, dt);
-  StepWork work = account(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
-  work.contact_end.share = share;
+  StepWork work = work_of_step(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
+  work.contact_end.scale = contact_scale;
   return work;
 }
 
 namespace {
 
-/// The coupling, linear in the step's end. A force or torque that would exceed its limit at the present velocity is a
-/// constant instead.
+/// Linearises the coupling. A force or torque that would exceed its limit at the present velocity is constant.
 void linearize(const RigidBody& body, const Loads& loads, double dt, ImplicitStep& step) {
   if (loads.coupling == nullptr) return;
   const Coupling& coupling = *loads.coupling;
@@ -184,14 +184,14 @@ void linearize(const RigidBody& body, const Loads& loads, double dt, ImplicitSte
   }
 }
 
-/// What the contact in the loads has become by the end of the step.
+/// The contact wrench of the loads at the end of the step.
 Vector6d contact_at_end(const RigidBody& body, const Loads& loads, const Vector6d& u1, double dt) {
   const Vector6d u0 = stacked(body.v_C, body.omega);
   return stacked(loads.contact) + dt * (loads.contact_drift - loads.contact_stiffness * u1) -
          loads.contact_damping * (u1 - u0);
 }
 
-/// A u1 = b of all loads, the contact in them with or without.
+/// A u1 = b of all loads, with or without the contact.
 void assemble(const RigidBody& body, const Loads& loads, double dt, bool with_contact, ImplicitStep& step) {
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Matrix6d M = Matrix6d::Zero();
@@ -217,8 +217,8 @@ ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt
   const bool touching = !loads.contact_stiffness.isZero(0) || !loads.contact_damping.isZero(0);
   assemble(body, loads, dt, touching, step);
   if (!touching) return step;
-  // A contact pushes; one that would pull by the end of the step has let go. M^-1 weighs forces against torques, so
-  // that the answer does not depend on the unit of length.
+  // A contact that would pull by the end of the step has separated. M^-1 weighs forces against torques, so the answer
+  // does not depend on the unit of length.
   const Vector6d contact1 = contact_at_end(body, loads, step.free, dt);
   if (contact1.dot(body.inverse_mass_matrix() * stacked(loads.contact)) <= 0) assemble(body, loads, dt, false, step);
   return step;
@@ -236,15 +236,15 @@ StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& s
   const Wrench spring = wrench_of(step.spring - dt * (step.K * u1));
   const Wrench damper = wrench_of(step.damper + step.D * (u0 - u1));
   const Motion motion = advance(body, u1, dt);
-  StepWork work = account(body, loads, motion, spring, damper, contact, energy_before, dt, 0);
+  StepWork work = work_of_step(body, loads, motion, spring, damper, contact, energy_before, dt, 0);
   work.contact_end = end;
   return work;
 }
 
 namespace {
 
-/// An implicit step and the same without contact, which by the end of the step has become the constant `contact`: all
-/// of that gives `with_all` again, none of it free.free.
+/// An implicit step divided into a step without contact (`free`) and the constant wrench `contact`, that of the end of
+/// the step. All of the wrench gives the velocity `with_all`, none of it free.free.
 struct DividedStep {
   Vector6d with_all, contact;
   ImplicitStep free;
@@ -268,23 +268,23 @@ ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, dou
           work_along(u0 + divided.free.free)};
 }
 
-StepWork step_implicit(RigidBody& body, const Loads& loads, double dt) {
+StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale) {
+  VERISIM_ASSERT(is_fraction(contact_scale));
   const ImplicitStep step = begin_implicit(body, loads, dt);
-  const double share = loads.contact_share;
-  if (!step.with_contact || share == 1) return end_implicit(body, loads, step, step.free, {}, dt);
+  if (!step.with_contact || contact_scale == 1) return end_implicit(body, loads, step, step.free, {}, dt);
   const DividedStep divided = divide(body, loads, step, dt);
-  const ContactEnd end{share, stacked(body.v_C, body.omega), divided.with_all};
-  const Vector6d u1 = divided.free.free + share * (divided.with_all - divided.free.free);
-  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(share * divided.contact), dt);
+  const ContactEnd end{contact_scale, stacked(body.v_C, body.omega), divided.with_all};
+  const Vector6d u1 = divided.free.free + contact_scale * (divided.with_all - divided.free.free);
+  StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(contact_scale * divided.contact), dt);
   work.contact_end = end;
   return work;
 }
 
-Wrench acted(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift, const ContactEnd& end,
-             double dt) {
+Wrench wrench_at_end(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift,
+                     const ContactEnd& end, double dt) {
   VERISIM_ASSERT(is_positive(dt));
-  VERISIM_ASSERT(is_fraction(end.share));
-  return wrench_of(end.share * (stacked(start) + dt * (drift - K * end.u1) - D * (end.u1 - end.u0)));
+  VERISIM_ASSERT(is_fraction(end.scale));
+  return wrench_of(end.scale * (stacked(start) + dt * (drift - K * end.u1) - D * (end.u1 - end.u0)));
 }
 
 }  // namespace verisim

@@ -1,14 +1,15 @@
-// Energy ledger: where every joule of a run came from and went to. All in J, summed since the start over all bodies.
+// Energy ledger: an account of all energy in a run. All in J, summed since the start over all bodies.
 //
 //   kinetic + coupling + gravity + dissipated + contact + numerical = input + (their sum at the start)
 //
-// kinetic, coupling (springs of the virtual couplings) and gravity are computed from the state, the latter two as the
-// integrator keeps them (shadow_energy in integrator.hpp); dissipated (couplings' dampers and clutches), contact (given
-// to contacts: stored in penalty springs and lost in their dampers and in the steps between voxels) and input (hand)
-// are works: force times dt times the mean of the velocities before and after, which is exactly what a force does to
-// kinetic energy. `numerical` is what the time discretization lost: a potential's force times that mean displacement
-// against the change of the potential, as kept, along the real one, and the turning of I at constant angular momentum.
-// What is left over is rounding: `residual`.
+// From the state: kinetic; coupling (springs of the virtual couplings) and gravity, as the integrator conserves them
+// (shadow_energy in integrator.hpp).
+// Works: dissipated (dampers and clutches of couplings); contact (given to contacts: stored in penalty springs, lost in
+// their dampers and in the steps between voxels); input (by the hand). A work is force times dt times the mean of the
+// velocities before and after, which is exactly the change of kinetic energy by that force.
+// numerical: energy lost by the time discretization. It is the work of potential forces along the mean displacement,
+// against the change of the potentials along the real one, plus the effect of a turning I at constant angular momentum.
+// residual: the rest, which is rounding.
 #pragma once
 
 #include "engine/dynamics/integrator.hpp"
@@ -22,14 +23,14 @@ struct EnergyState {
 
 class Ledger {
  public:
-  /// Starts with what is there. Also resets.
+  /// Resets all sums; the present energy is the start.
   void start(const EnergyState& state) {
     *this = Ledger();
     start_ = state.sum();
   }
   void add(const StepWork& work);
-  /// A change that no load made: the hand moved the handle and so stretched the spring; a grasp, a release; a body that
-  /// a script put elsewhere.
+  /// Adds a change of energy that no load made: the handle moved and stretched the spring; a grasp or a release; a
+  /// script moved a body.
   void add_jump(double energy) { input_ += energy; }
 
   [[nodiscard]] double dissipated() const { return dissipated_; }

@@ -15,7 +15,7 @@ struct ContactRow {
   Vector3d point;        ///< where the force acts [m]
   double gap;            ///< m, < 0: the bodies overlap by that much along the normal
   double stiffness;      ///< N/m
-  std::uint32_t source;  ///< which sample of which body met which face: the same number in the next frame
+  std::uint32_t source;  ///< identifies body, sample and face; the same in the next frame
 };
 
 /// Rows up to a capacity that is fixed when the list is made. Rows beyond it are counted and left out.

@@ -8,10 +8,10 @@
 namespace verisim::exact {
 namespace {
 
-/// Newton's method ends after a few: this bounds the time of a step whose numbers are beyond all measure.
+/// Newton's method ends after a few iterations. This bounds the time of a step with absurd numbers.
 constexpr int kIterationsMax = 60;
-/// Of the cost: what a step would still win is lost in its rounding.
-constexpr double kNothing = 1e-15;
+/// Relative to the cost: a smaller Newton decrement is lost in rounding.
+constexpr double kRoundingOfCost = 1e-15;
 /// Largest matrix of unknowns, on the stack.
 constexpr int kUnknownsMax = 6 * ConvexStep::kBodiesMax;
 using MatrixN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kUnknownsMax, kUnknownsMax>;
@@ -97,7 +97,7 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
   }
 }
 
-void ConvexStep::place_rows(double dt) {
+void ConvexStep::evaluate_gaps(double dt) {
   for (Row& row : rows_) {
     double rate = row.J[0].dot(bodies_[at(row.body[0])].u);
     if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].u);
@@ -115,23 +115,23 @@ double ConvexStep::cost() const {
   return 0.5 * sum;
 }
 
-/// From the cheaper of the two: the guess or the motion without contact.
-void ConvexStep::start(double dt) {
-  place_rows(dt);
-  const double of_guess = cost();
+/// Starts from the guess or from the motion without contact, whichever costs less.
+void ConvexStep::choose_start(double dt) {
+  evaluate_gaps(dt);
+  const double cost_of_guess = cost();
   for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 the guess
-  place_rows(dt);
-  double of_free = 0;
-  for (const Row& row : rows_) of_free += 0.5 * row.k * std::min(0.0, row.z) * std::min(0.0, row.z);
-  const bool free_is_better = of_free <= of_guess;
+  evaluate_gaps(dt);
+  double cost_of_free = 0;
+  for (const Row& row : rows_) cost_of_free += 0.5 * row.k * std::min(0.0, row.z) * std::min(0.0, row.z);
+  const bool starts_free = cost_of_free <= cost_of_guess;
   for (Body& body : bodies_) {
     std::swap(body.u, body.u0);
-    if (free_is_better) body.u = body.u0;
+    if (starts_free) body.u = body.u0;
   }
-  if (!free_is_better) place_rows(dt);
+  if (!starts_free) evaluate_gaps(dt);
 }
 
-/// The Newton direction of one body. False if nothing is left to do.
+/// The Newton direction of one body. False if it is zero.
 bool ConvexStep::find_direction_of_one(double dt) {
   Body& body = bodies_[0];
   const Vector6d push = body.M * (body.u - body.u0);
@@ -184,15 +184,15 @@ bool ConvexStep::find_direction_of_all(double dt) {
   return !x.isZero(0);
 }
 
-/// How everything changes along the direction.
-void ConvexStep::change_along(double dt) {
-  inertia_cost_ = inertia_slope_ = inertia_bend_ = 0;
+/// The derivatives of all gaps and of the first term of the cost along the search direction.
+void ConvexStep::prepare_line_search(double dt) {
+  inertia_cost_ = inertia_slope_ = inertia_curvature_ = 0;
   for (const Body& body : bodies_) {
     const Vector6d off = body.u - body.u0;
     const Vector6d push = body.M * body.direction;
     inertia_cost_ += 0.5 * off.dot(body.M * off);
     inertia_slope_ += off.dot(push);
-    inertia_bend_ += body.direction.dot(push);
+    inertia_curvature_ += body.direction.dot(push);
   }
   for (Row& row : rows_) {
     double rate = row.J[0].dot(bodies_[at(row.body[0])].direction);
@@ -201,47 +201,47 @@ void ConvexStep::change_along(double dt) {
   }
 }
 
-ConvexStep::Along ConvexStep::along(double t) const {
-  Along sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_bend_), inertia_slope_ + t * inertia_bend_,
-            inertia_bend_};
+ConvexStep::LineValue ConvexStep::value_along(double t) const {
+  LineValue sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_curvature_),
+                inertia_slope_ + t * inertia_curvature_, inertia_curvature_};
   for (const Row& row : rows_) {
     const double overlap = row.z + t * row.dz;
     if (overlap >= 0) continue;
     sum.cost += 0.5 * row.k * overlap * overlap;
     sum.slope += row.k * overlap * row.dz;
-    sum.bend += row.k * row.dz * row.dz;
+    sum.curvature += row.k * row.dz * row.dz;
   }
   return sum;
 }
 
-/// Newton's decrement against the cost: what is left to win is lost in rounding.
-bool ConvexStep::gains_nothing() const {
-  const Along begin = along(0);
-  return -begin.slope <= kNothing * begin.cost;
+/// True if the Newton decrement is below the rounding of the cost.
+bool ConvexStep::has_converged() const {
+  const LineValue begin = value_along(0);
+  return -begin.slope <= kRoundingOfCost * begin.cost;
 }
 
-/// The whole step if it lowers the cost enough, else where the cost is least. Least to the last digits: a stop short of
-/// there can be short of where the next row begins to act, and the next direction would run into that row again.
+/// Line search: 1 if the full step lowers the cost enough (Armijo), else the exact minimum. It is found to the last
+/// digits: a step that ends just before the next row begins to act would meet that row again in the next direction.
 double ConvexStep::step_length() const {
   constexpr double kEnough = 1e-4;  // of the slope at the start: Armijo's usual constant
   constexpr double kFlat = 1e-10;   // of the slope at the start
-  const Along begin = along(0);
-  Along here = along(1);
+  const LineValue begin = value_along(0);
+  LineValue here = value_along(1);
   if (here.cost <= begin.cost + kEnough * begin.slope) return 1;
   double low = 0;
   double high = 1;
   double t = 1;
-  for (int i = 0; i < 40; ++i) {  // the slope rises with t and is made of straight pieces: Newton's method ends on one
-    const double wanted = t - here.slope / here.bend;
+  for (int i = 0; i < 40; ++i) {  // the slope is piecewise linear and rises with t: Newton's method ends on one piece
+    const double wanted = t - here.slope / here.curvature;
     t = wanted > low && wanted < high ? wanted : 0.5 * (low + high);
-    here = along(t);
+    here = value_along(t);
     if (std::abs(here.slope) <= -kFlat * begin.slope) break;
     (here.slope < 0 ? low : high) = t;
   }
   return t;
 }
 
-/// Goes along the direction. True if the same rows act before and after.
+/// Takes a step of length t. True if the same rows act before and after.
 bool ConvexStep::advance(double t) {
   for (Body& body : bodies_) body.u += t * body.direction;
   bool same = true;
@@ -255,18 +255,20 @@ bool ConvexStep::advance(double t) {
 
 int ConvexStep::solve(double dt) {
   VERISIM_ASSERT(is_positive(dt));
+  finished_ = true;
   if (bodies_.empty()) return 0;
-  start(dt);
+  choose_start(dt);
   for (int i = 0; i < kIterationsMax; ++i) {
     const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt) : find_direction_of_all(dt);
     if (!moves) return i;
-    change_along(dt);
-    if (gains_nothing()) return i;
+    prepare_line_search(dt);
+    if (has_converged()) return i;
     const double t = step_length();
     const bool same = advance(t);
-    // With the same rows the cost is one parabola, and its Newton step ends at its minimum.
+    // With the same rows acting the cost is one parabola, and a full Newton step ends at its minimum.
     if (same && t == 1) return i + 1;
   }
+  finished_ = false;
   return kIterationsMax;
 }
 

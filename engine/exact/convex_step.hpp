@@ -2,14 +2,16 @@
 //
 //   1/2 (u - u0)^T M (u - u0)  +  sum_i k_i/2 min(0, g_i + dt J_i u)^2
 //
-// with u0 the velocities without contact and M the bodies' inertia (plus dt D + dt^2 K of what is taken linearly
-// implicitly, as the virtual coupling). It is the penalty method evaluated at the end of the step instead of its
-// beginning: stable for any stiffness. Strictly convex, so semi-smooth Newton with a line search ends at the one
-// minimum; each iteration is one Cholesky solve of 6 unknowns per body. The same idea with friction: Castro et al.,
-// "An unconstrained convex formulation of compliant contact" (SAP), 2022.
+// u0: velocities without contact. M: the bodies' inertia, plus dt D + dt^2 K of forces that are linearly implicit, as
+// those of the virtual coupling. g_i, k_i, J_i: gap, stiffness and Jacobian of row i.
 //
-// World coordinates; a velocity is (v, omega) of the centre of mass. No allocation after the constructor; sums run in
-// the order in which rows were added.
+// This is the penalty method with forces at the end of the step instead of its beginning; it is stable for any
+// stiffness. The cost is strictly convex, so semi-smooth Newton with a line search converges to its one minimum. Each
+// iteration is one Cholesky solve with 6 unknowns per body. The same formulation with friction: Castro et al., "An
+// unconstrained convex formulation of compliant contact" (SAP), 2022.
+//
+// World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor.
+// Sums are taken in the order in which rows were added.
 #pragma once
 
 #include <algorithm>
@@ -22,41 +24,45 @@
 
 namespace verisim::exact {
 
-/// Stands for a body that does not move.
+/// Number of a body that does not move.
 inline constexpr int kFixed = -1;
 
 class ConvexStep {
  public:
-  static constexpr int kBodiesMax = 8;  ///< bodies in contact with each other that are solved as one block
+  static constexpr int kBodiesMax = 8;  ///< bodies of one problem
 
   explicit ConvexStep(std::size_t rows_max);
 
-  /// Forgets bodies and rows of the last step. Keeps nothing: the answer depends on this step alone.
+  /// Removes all bodies and rows. Nothing is kept: the answer depends on this step alone.
   void clear();
 
   /// @param M   about the centre of mass
   /// @param u0  velocity that the body would have without contact
-  /// @param guess  velocity to start from; any will do, last step's is a good one
+  /// @param guess  velocity to start from: any finite one; that of the last step saves iterations
   /// @pre fewer than kBodiesMax bodies so far; M is symmetric positive definite  @returns the body's number
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess);
 
-  /// Rows between two bodies. Rows beyond rows_max are left out.
+  /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
   /// @pre both are numbers from add_body or kFixed, and not the same
   void add_rows(std::span<const ContactRow> rows, int first, int second);
 
   /// @pre dt is finite and above 0
-  /// Solves; returns the Newton iterations that it took (0: no row acts). About 1 us for one body and 20 rows that act.
+  /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
+  /// 20 rows that act.
   int solve(double dt);
 
   /// @pre body is a number from add_body, here and below
   [[nodiscard]] const Vector6d& velocity(int body) const;
   /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
   [[nodiscard]] Wrench wrench(int body) const;
-  /// Normal force of the i-th row added [N, >= 0], and its gap at the end of the step, linearised [m].
+  /// Normal force of the i-th row added [N, >= 0].
   [[nodiscard]] double force(std::size_t row) const { return -rows_[row].k * std::min(0.0, rows_[row].z); }
+  /// Its linearised gap at the end of the step [m].
   [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].z; }
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
   [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
+  /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.
+  [[nodiscard]] bool finished() const { return finished_; }
 
  private:
   struct Body {
@@ -65,32 +71,33 @@ class ConvexStep {
     Vector6d u0, u, direction;
   };
   struct Row {
-    std::array<Vector6d, 2> J;  ///< change of the gap with the bodies' velocities
+    std::array<Vector6d, 2> J;  ///< Jacobian: rate of the gap by the bodies' velocities
     std::array<int, 2> body;    ///< the second may be kFixed
     double g, k;
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
   };
-  /// The problem along the search direction: cost and its two derivatives at a step t.
-  struct Along {
-    double cost, slope, bend;
+  /// The cost along the search direction and its first two derivatives, at step length t.
+  struct LineValue {
+    double cost, slope, curvature;
   };
 
-  void start(double dt);
-  void place_rows(double dt);
+  void choose_start(double dt);
+  void evaluate_gaps(double dt);
   [[nodiscard]] double cost() const;
   bool find_direction_of_one(double dt);
   bool find_direction_of_all(double dt);
-  void change_along(double dt);
-  [[nodiscard]] Along along(double t) const;
-  [[nodiscard]] bool gains_nothing() const;
+  void prepare_line_search(double dt);
+  [[nodiscard]] LineValue value_along(double t) const;
+  [[nodiscard]] bool has_converged() const;
   [[nodiscard]] double step_length() const;
   bool advance(double t);
 
   std::vector<Row> rows_;
   std::vector<Body> bodies_;
   std::size_t left_out_ = 0;
-  double inertia_cost_ = 0, inertia_slope_ = 0, inertia_bend_ = 0;  ///< of the first term along the direction
+  bool finished_ = true;
+  double inertia_cost_ = 0, inertia_slope_ = 0, inertia_curvature_ = 0;  ///< of the first term along the direction
 };
 
 }  // namespace verisim::exact

@@ -4,13 +4,14 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/exact/feature_maker.hpp"
 
 namespace verisim::exact {
 namespace {
 
-/// What a tessellation may leave out of a round face's box, as a share of its radius: chords of 0.5 rad.
+/// How far a round face may bulge out of the box of its triangles, relative to its radius: chords of 0.5 rad.
 constexpr double kSagitta = 0.03;
 
 /// The triangles of one part, by face.
@@ -43,8 +44,8 @@ double squared_distance(const Vector3d& a, const Vector3d& b, const Vector3d& p)
   return (a + s * ab - p).squaredNorm();
 }
 
-/// Does a face lie in the direction `across` from a point of its border, or opposite to it? The triangles whose sides
-/// are nearest to the point say it by their third corners: one, or where the point is a corner all that meet there.
+/// True if a face lies in the direction `across` from a point p of its border, false if opposite to it. Decided by the
+/// third corners of the triangles whose sides are nearest to p: one triangle, or at a corner all that meet there.
 bool lies_towards(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const Vector3d& p,
                   const Vector3d& across) {
   constexpr double kSame = 1e-16;  // m^2: corners are rounded to 1.5e-11 m
@@ -67,45 +68,49 @@ bool lies_towards(const TriangleMesh& mesh, std::span<const std::uint32_t> trian
 void set_extent(ExactEdge& made, const Edge& edge) {
   const double width = 0.5 * (edge.t_range[1] - edge.t_range[0]);
   const double center = 0.5 * (edge.t_range[0] + edge.t_range[1]);
-  if (const auto* line = std::get_if<Line>(&edge.curve)) {
-    made.extent = ExactEdge::Extent::line;
-    made.middle = line->point + center * line->direction;
-    made.along = line->direction;
-    made.half = width;
-  } else if (const auto* circle = std::get_if<Circle>(&edge.curve); circle != nullptr && width < 0.999 * pinned::kPi) {
-    made.extent = ExactEdge::Extent::arc;
-    made.middle = circle->center;
-    const Vector3d y = circle->normal.cross(circle->x_axis);
-    made.along = pinned::cos(center) * circle->x_axis + pinned::sin(center) * y;
-    made.on = pinned::cos(center) * y - pinned::sin(center) * circle->x_axis;
-    made.half = pinned::cos(width);
-  }
+  std::visit(Overloaded{[&](const Line& c) {
+                          made.extent = ExactEdge::Extent::line;
+                          made.center = c.point + center * c.direction;
+                          made.direction = c.direction;
+                          made.half = width;
+                        },
+                        [&](const Circle& c) {
+                          if (!(width < 0.999 * pinned::kPi)) return;
+                          made.extent = ExactEdge::Extent::arc;
+                          made.center = c.center;
+                          const Vector3d y = c.normal.cross(c.x_axis);
+                          made.direction = pinned::cos(center) * c.x_axis + pinned::sin(center) * y;
+                          made.perpendicular = pinned::cos(center) * y - pinned::sin(center) * c.x_axis;
+                          made.half = pinned::cos(width);
+                        },
+                        [](const Ellipse&) {}, [](const OtherCurve&) {}},
+             edge.curve);
 }
 
-/// Takes one part into a body, entity by entity.
-class PartTaker {
+/// Adds one part to a body, entity by entity.
+class PartImporter {
  public:
-  PartTaker(ExactBody& body, const Part& part)
+  PartImporter(ExactBody& body, const Part& part)
       : body_(body),
         part_(part),
         triangles_(part.mesh, part.faces.size()),
         face_base_(static_cast<std::uint32_t>(body.faces.size())),
         points_(part.edges.size()),
         borders_(part.faces.size()) {
-    for (std::size_t f = 0; f < part.faces.size(); ++f) take_surface(f);
-    for (std::size_t e = 0; e < part.edges.size(); ++e) take_edge(e);
-    for (std::size_t f = 0; f < part.faces.size(); ++f) take_trim(f);
-    take_corners(body, ends_);
+    for (std::size_t f = 0; f < part.faces.size(); ++f) add_surface(f);
+    for (std::size_t e = 0; e < part.edges.size(); ++e) add_edge(e);
+    for (std::size_t f = 0; f < part.faces.size(); ++f) add_trim(f);
+    add_corners(body, ends_);
   }
 
  private:
-  void take_surface(std::size_t f) {
+  void add_surface(std::size_t f) {
     ExactFace& face = body_.faces.emplace_back();
     for (const std::uint32_t t : triangles_.of(f))
       for (const std::uint32_t v : part_.mesh.triangles[t]) face.bounds.include(part_.mesh.vertices[v]);
     if (triangles_.of(f).empty()) return;
-    face.surface = PreciseSurface::from(part_.faces[f].surface);
-    if (!face.surface || face.surface->kind() == PreciseSurface::Kind::plane) return;
+    face.surface = PreciseSurface::from(part_.faces[f]);
+    if (!face.surface || face.surface->kind() == SurfaceKind::plane) return;
     const Vector3d more = Vector3d::Constant(kSagitta * face.bounds.size().maxCoeff());
     face.bounds.min -= more;
     face.bounds.max += more;
@@ -116,9 +121,9 @@ class PartTaker {
     return surface ? &*surface : nullptr;
   }
 
-  void take_edge(std::size_t e) {
+  void add_edge(std::size_t e) {
     const Edge& edge = part_.edges[e];
-    if (edge.faces.size() != 2 || edge.faces[0] == edge.faces[1]) return;  // a seam: the surface goes on
+    if (edge.faces.size() != 2 || edge.faces[0] == edge.faces[1]) return;  // a seam inside one surface
     ExactEdge made;
     made.faces = {face_base_ + edge.faces[0], face_base_ + edge.faces[1]};
     const PreciseSurface* surface[2] = {surface_of(made.faces[0]), surface_of(made.faces[1])};
@@ -130,48 +135,48 @@ class PartTaker {
     };
     const std::size_t middle = points_[e].size() / 2;
     std::array<double, 2> sign{1, 1};  // makes tangent x normal point out of the face, all along the edge
-    const auto out_of = [&](std::size_t i, std::size_t side) {
+    const auto outward = [&](std::size_t i, std::size_t side) {
       const Vector3d normal = surface[side]->at(points_[e][i]).normal;
       return Vector3d(sign[side] * tangent(i).cross(normal).normalized());
     };
     for (std::size_t side = 0; side < 2; ++side) {
       if (surface[side] == nullptr) continue;
       const std::span<const std::uint32_t> triangles = triangles_.of(edge.faces[side]);
-      if (lies_towards(part_.mesh, triangles, points_[e][middle], out_of(middle, side))) sign[side] = -1;
+      if (lies_towards(part_.mesh, triangles, points_[e][middle], outward(middle, side))) sign[side] = -1;
     }
     set_extent(made, edge);
     if (surface[0] != nullptr && surface[1] != nullptr) {
-      const double turn = out_of(middle, 0).dot(surface[1]->at(points_[e][middle]).normal);
-      if (turn > body_.options.smooth) made.fold = Fold::convex;
-      if (turn < -body_.options.smooth) made.fold = Fold::concave;
+      const double turn = outward(middle, 0).dot(surface[1]->at(points_[e][middle]).normal);
+      if (turn > body_.options.smooth) made.convexity = Convexity::convex;
+      if (turn < -body_.options.smooth) made.convexity = Convexity::concave;
     }
-    for (std::size_t i = 0; made.fold == Fold::smooth && i < points_[e].size(); ++i) {
+    for (std::size_t i = 0; made.convexity == Convexity::smooth && i < points_[e].size(); ++i) {
       ExactEdge::Mark& mark = made.marks.emplace_back();
       mark.point = points_[e][i];
       for (std::size_t side = 0; side < 2; ++side)
-        mark.out_of[side] = surface[side] == nullptr ? Vector3d(Vector3d::Zero()) : out_of(i, side);
+        mark.outward[side] = surface[side] == nullptr ? Vector3d(Vector3d::Zero()) : outward(i, side);
     }
     const auto number = static_cast<std::uint32_t>(body_.edges.size());
     for (const std::uint32_t f : edge.faces) borders_[f].push_back({number, points_[e]});
     if (surface[0] != nullptr || surface[1] != nullptr) add_edge_features(body_, edge, made, points_[e], sign);
     const std::vector<Vector3d>& p = points_[e];
-    const auto out_of_both = [&](std::size_t i) {
+    const auto outward_of_both = [&](std::size_t i) {
       std::array<Vector3d, 2> out = {Vector3d::Zero(), Vector3d::Zero()};
       for (std::size_t side = 0; side < 2; ++side)
-        if (surface[side] != nullptr) out[side] = out_of(i, side);
+        if (surface[side] != nullptr) out[side] = outward(i, side);
       return out;
     };
-    ends_.push_back({p.front(), tangent(0), number, 0, out_of_both(0)});
-    ends_.push_back({p.back(), -tangent(p.size() - 1), number, 1, out_of_both(p.size() - 1)});
+    ends_.push_back({p.front(), tangent(0), number, 0, outward_of_both(0)});
+    ends_.push_back({p.back(), -tangent(p.size() - 1), number, 1, outward_of_both(p.size() - 1)});
     body_.edges.push_back(std::move(made));
   }
 
-  void take_trim(std::size_t f) {
+  void add_trim(std::size_t f) {
     const auto number = face_base_ + static_cast<std::uint32_t>(f);
     ExactFace& face = body_.faces[number];
     if (!face.surface) return;
     face.trim.emplace(*face.surface, part_.mesh, triangles_.of(f), borders_[f], body_.options.spacing);
-    ++body_.known_faces;
+    ++body_.precise_face_count;
     add_face_features(body_, part_.faces[f], number);
   }
 
@@ -186,16 +191,16 @@ class PartTaker {
 
 }  // namespace
 
-bool ExactEdge::speaks_for(std::uint32_t face, const Vector3d& p, double distance) const {
-  constexpr double kLittle = 5e-5;  // m: deeper than contacts go
+bool ExactEdge::limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const {
+  constexpr double kBeyondEnd = 5e-5;  // m: deeper than contacts go
   if (extent == Extent::all) return true;
-  const Vector3d d = p - middle;
-  const double a = along.dot(d);
-  const double b = on.dot(d);
+  const Vector3d d = p - center;
+  const double a = direction.dot(d);
+  const double b = perpendicular.dot(d);
   const bool is_line = extent == Extent::line;
   const double beyond = is_line ? std::abs(a) - half : half * std::sqrt(a * a + b * b) - a;
   const std::size_t end = (is_line ? a : b) > 0 ? 1 : 0;
-  return beyond <= (distance < 0 ? kLittle : 0) || speaks_beyond[faces[0] == face ? 0 : 1][end];
+  return beyond <= (distance < 0 ? kBeyondEnd : 0) || limits_beyond_end[faces[0] == face ? 0 : 1][end];
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {
@@ -210,13 +215,13 @@ ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : o
       for (const std::uint32_t face : edge.faces) VERISIM_ASSERT(face < part.faces.size());
     }
   }
-  for (const Part& part : parts) PartTaker(*this, part);
+  for (const Part& part : parts) PartImporter(*this, part);
   std::vector<Bounds> boxes;
   for (const ExactFace& face : faces) boxes.push_back(face.surface ? face.bounds : Bounds());
   face_tree = BoxTree(boxes);
   boxes.clear();
-  for (const Run& run : runs) boxes.push_back(bounds_of(*this, run));
-  run_tree = BoxTree(boxes);
+  for (const SampleBlock& block : blocks) boxes.push_back(bounds_of(*this, block));
+  block_tree = BoxTree(boxes);
 }
 
 }  // namespace verisim::exact

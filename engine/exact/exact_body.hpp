@@ -1,21 +1,25 @@
-// What a body collides by where its entities are known precisely: faces with their surfaces, trims and neighbours, and
-// the features that can touch another body's faces first. Made once, at load; constant afterwards.
+// The collision model of a body whose entities are known precisely. It has two parts: faces (surface, trim, edges to
+// the neighbours), and features, the curves and points of the body that can touch another body's faces first. Made
+// once, at load; constant afterwards. Body coordinates [m].
 //
-// Body coordinates [m]. A feature is a curve (or point) of the body that carries a ball of some radius: an edge or a
-// corner (radius 0), the middle of a ball, the ring of a torus, the axis of a pin or cone (along which the balls that
-// fill a cone grow). Along straight lines the distance to a plane, a hole or a conical hole is linear or concave, so
-// where a pin's or a cone's side meets one of those, the side's ends decide: its edges are enough. What is left are
-// round outsides against round outsides, and balls and rings.
+// A feature is a curve or point that carries a ball of some radius:
+//   - an edge or a corner (radius 0);
+//   - the centre of a sphere, the ring of a torus;
+//   - the axis of a pin or cone. The balls that fill a cone have a radius that grows along the axis.
+// Along a straight line the distance to a plane, a hole or a conical hole is linear or concave, so its least value lies
+// at an end of the line. The side of a pin or cone therefore touches such a face first at its end edges, and these are
+// enough. The axes are needed only against other convex round faces (Feature::against_round_only).
 //
-// A curve is cut into segments no longer than the spacing. In the search a segment's sample slides along its own
-// segment to the nearest place (exact_link.hpp); a group of neighbouring segments makes one row, that of the nearest of
-// them: up to four, and on an arc those within half a radian, beyond which they push in different directions; where a
-// group lies flush its ends have rows of their own.
+// Sampling and contact reduction. A curve is cut into segments no longer than the spacing. A segment has one sample,
+// its middle; the search moves it to the closest place of the segment (exact_link.hpp). A group of neighbouring
+// segments makes one row, that of its closest place. A group has at most four segments; on an arc it spans at most half
+// a radian, because farther places push in different directions. A group that coincides with the face has rows at its
+// ends as well.
 //
-// Stiffness: an edge is a line of springs with `line_stiffness` per metre, a point counts as `point_length` of it. So
-// the sum over samples tends to an integral over the line as the spacing shrinks. The default is that of steel on steel
-// (half of E / (1 - nu^2) = 2.3e11 N/m^2); it is what leaves an overlap of 1 % of a clearance of 0.01 mm where a lean
-// of half a degree presses a pin of 150 mm into both rims of its hole with 250 N.
+// Stiffness. An edge is a line of springs with `line_stiffness` per metre; a point counts as `point_length` of it. The
+// sum over samples so tends to an integral over the line as the spacing shrinks. The default is that of steel on steel
+// (half of E / (1 - nu^2) = 2.3e11 N/m^2). With it, a pin of 150 mm that leans by half a degree and is pressed into
+// both rims of its hole with 250 N overlaps by 1 % of a clearance of 0.01 mm.
 #pragma once
 
 #include <optional>
@@ -30,48 +34,51 @@ namespace verisim::exact {
 
 struct BodyOptions {
   double spacing = 0;               ///< m, > 0: longest segment; usually the voxel size
-  double line_stiffness = 1.15e11;  ///< N/m per m
-  double point_length = 0.004;      ///< m
-  // Heuristic: how little results hang on these is in exact_thresholds_test.
-  double smooth = 0.0087;  ///< sine of the angle between its two faces, 0.5 degrees: below it an edge is smooth
-  double group_angle =
-      0.5;  ///< rad: segments of an arc further apart push in different directions, each in its own row
+  double line_stiffness = 1.15e11;  ///< N/m per m of an edge
+  double point_length = 0.004;      ///< m: a corner is as stiff as an edge of this length
+  // Heuristic: exact_thresholds_test says how little results depend on these.
+  double smooth = 0.0087;    ///< sine of the angle between its two faces, 0.5 degrees: below it an edge is smooth
+  double group_angle = 0.5;  ///< rad, largest arc of a group: farther segments push in different directions
 };
 
-/// How the material lies at an edge.
-enum class Fold : std::uint8_t { convex, concave, smooth };
+/// Convex: the angle inside the material is below 180 degrees. Smooth: the faces are tangent (to 0.5 degrees).
+enum class Convexity : std::uint8_t { convex, concave, smooth };
 
-/// An edge between two faces, as each of them sees it.
+/// An edge between two faces, and for which points it decides which of the two owns them (edge_ownership.hpp).
 struct ExactEdge {
   std::array<std::uint32_t, 2> faces{};  ///< numbers in ExactBody::faces
-  Fold fold = Fold::smooth;
-  /// A point may lie beyond the edge's end, and then the edge says nothing about it, unless the end is a corner where
-  /// all edges are convex: there the material is inside of all of them. Nor is there a doubt for one of the two faces
-  /// if its own corner there is less than half a turn wide: who is across the edge is off that face. Lines: `along` .
-  /// (p - middle) beyond +-half. Arcs of circles: middle the circle's centre, `along` and `on` towards the arc's middle
-  /// and a quarter turn on, half the cosine of half the arc. Others and full circles always speak. At a corner with a
-  /// concave edge the material is inside of this or of the next: a little beyond the end the edge still speaks for a
-  /// point inside of both.
+  Convexity convexity = Convexity::smooth;
+
+  /// How the extent of the edge is tested. Full circles and other curves: `all`, everywhere within.
+  ///   line  within where |direction . (p - center)| <= half
+  ///   arc   center: of the circle; direction: towards the arc's middle; perpendicular: a quarter turn on; half: cosine
+  ///         of half the arc
   enum class Extent : std::uint8_t { line, arc, all };
   Extent extent = Extent::all;
-  Vector3d middle = Vector3d::Zero(), along = Vector3d::Zero(), on = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero(), direction = Vector3d::Zero(), perpendicular = Vector3d::Zero();
   double half = 0;
-  std::array<std::array<bool, 2>, 2> speaks_beyond = {};  ///< to either face: its beginning, its end
-  /// Is it this edge that ends `face` there?
-  /// @param distance  of p from the face across the edge [m]
-  [[nodiscard]] bool speaks_for(std::uint32_t face, const Vector3d& p, double distance) const;
+  /// [face][0: at its beginning, 1: at its end] Does the edge limit the face beyond that end too? True in two cases:
+  /// all edges at that corner are convex, so the material is inside of all of their faces; or the face's own corner
+  /// there is convex (below 180 degrees), so whoever is across the edge is off the face.
+  std::array<std::array<bool, 2>, 2> limits_beyond_end = {};
 
-  /// Smooth edges only: points along the edge with, per point, the directions out of either face across the edge.
+  /// True if the edge limits `face` near the point p: p lies within the extent, or limits_beyond_end holds. At a corner
+  /// with a concave edge the material is inside of either of two faces; a point that is inside of the face across
+  /// (distance < 0) counts as within up to 0.05 mm beyond the end.
+  /// @param distance  of p from the face across the edge [m]
+  [[nodiscard]] bool limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const;
+
+  /// Smooth edges only: points along the edge, and at each the direction that leaves either face across the edge.
   struct Mark {
     Vector3d point;
-    std::array<Vector3d, 2> out_of;
+    std::array<Vector3d, 2> outward;
   };
   std::vector<Mark> marks;
 };
 
 struct ExactFace {
-  std::optional<PreciseSurface> surface;  ///< none: another surface; the voxels answer for it
-  std::optional<Trim> trim;               ///< with the surface
+  std::optional<PreciseSurface> surface;  ///< none: freeform; contacts with it are the voxels'
+  std::optional<Trim> trim;               ///< present if the surface is
   Bounds bounds;
 };
 
@@ -82,48 +89,48 @@ struct Feature {
   /// line: p(t) = origin + t x.  arc: p(t) = origin + cos t x + sin t y (circles and ellipses).  point: origin.
   Vector3d origin = Vector3d::Zero(), x = Vector3d::Zero(), y = Vector3d::Zero();
   double radius = 0;                 ///< m, of the ball; of a line's at t = 0
-  double growth = 0;                 ///< of a line's radius with t
+  double radius_slope = 0;           ///< of a line's radius, by t
   double half_width = 0;             ///< of a segment, in t
-  double reach = 0;                  ///< m, half the length of a segment
+  double half_length = 0;            ///< m, of a segment
   double stiffness = 0;              ///< N/m of one segment
   std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row; at most kGroupMax
-  std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; must contain the place of contact
-  bool against_round_only = false;   ///< axes of pins and cones: their ends decide against everything else
-  [[nodiscard]] double radius_at(double c) const { return radius + growth * c; }  ///< c as in sample_c
+  std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; a contact must lie on it
+  bool against_round_only = false;   ///< axes of pins and cones
+  [[nodiscard]] double radius_at(double c) const { return radius + radius_slope * c; }  ///< c as in sample_c
 };
 
 inline constexpr std::uint32_t kGroupMax = 4;
 
-/// Neighbouring segments of one feature, as the search takes them: at most kRun samples.
-struct Run {
+/// Neighbouring samples of one feature that the search tests together: at most kBlockSize.
+struct SampleBlock {
   std::uint32_t feature, begin, end;  ///< samples [begin, end)
 };
-inline constexpr std::uint32_t kRun = 32;
+inline constexpr std::uint32_t kBlockSize = 32;
 
 struct ExactBody {
-  /// Parts that move as one, in body coordinates. Any part may be without b-rep: it then adds nothing. A face or edge
-  /// that no triangle or polyline belongs to adds nothing. @pre spacing and line_stiffness are finite and above 0,
-  /// the other options not negative; meshes are whole (is_whole), edges name faces of their part
+  /// Parts that move as one, in body coordinates. A part without b-rep adds nothing, nor does a face without triangles
+  /// or an edge without a polyline. @pre spacing and line_stiffness are finite and above 0, the other options not
+  /// negative; meshes are whole (is_whole), edges name faces of their part
   ExactBody(std::span<const Part> parts, const BodyOptions& options);
 
-  /// Is anything known precisely?
-  [[nodiscard]] bool knows_anything() const { return known_faces > 0; }
+  /// True if at least one face has a precise surface.
+  [[nodiscard]] bool has_precise_faces() const { return precise_face_count > 0; }
 
   BodyOptions options;
   std::vector<ExactFace> faces;  ///< of all parts, one part after the other
   std::vector<ExactEdge> edges;
   std::vector<Feature> features;
-  // Samples, the middles of the segments; n of them.
+  // n samples, the middles of the segments.
   std::vector<double> sample_c, sample_s;  ///< (n) arc: cosine and sine of t; line: t and 0; point: 0
-  /// (n + 1) Where each sample's wedge begins in `wedges`: directions from there into the body along its boundary. The
-  /// normal of a contact has no negative part along any of them, for else the body would reach through the other's
-  /// surface right beside it.
-  std::vector<std::uint32_t> wedge_begin = {0};
-  std::vector<Vector3d> wedges;
-  std::vector<Run> runs;
-  BoxTree face_tree;  ///< over the faces with a surface
-  BoxTree run_tree;   ///< over the runs, their balls included
-  std::size_t known_faces = 0;
+  /// (n + 1) Where each sample's directions begin in `cone_directions`. They span the tangent cone of the body at the
+  /// sample. A contact's normal must have no negative component along any of them (it lies in the normal cone), or the
+  /// body would pass through the other's surface beside the sample.
+  std::vector<std::uint32_t> cone_begin = {0};
+  std::vector<Vector3d> cone_directions;  ///< unit
+  std::vector<SampleBlock> blocks;
+  BoxTree face_tree;   ///< over the faces with a surface
+  BoxTree block_tree;  ///< over the blocks, their balls included
+  std::size_t precise_face_count = 0;
 };
 
 }  // namespace verisim::exact

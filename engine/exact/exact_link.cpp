@@ -13,33 +13,33 @@ Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d&
   return twist.linear + twist.angular.cross(p_W - body.p_WC);
 }
 
-SearchFrame frame_of(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, double size,
-                     bool mover_is_second, const SearchThresholds& thresholds) {
-  SearchFrame f;
+RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, double size,
+                               bool mover_is_second, const SearchThresholds& thresholds) {
+  RelativeMotion motion;
   const Pose X_BM = base.X_WB.inverse() * mover.X_WB;
-  f.R = X_BM.rotation.toRotationMatrix();
-  f.p = X_BM.position;
+  motion.R = X_BM.rotation.toRotationMatrix();
+  motion.p = X_BM.position;
   const Quaterniond to_base = base.X_WB.rotation.conjugate();
   const Vector3d& origin = base.X_WB.position;
   const auto against = [&](const Twist& of_mover, const Twist& of_base) {
     return Twist{to_base * (velocity_at(mover, of_mover, origin) - velocity_at(base, of_base, origin)),
                  to_base * (of_mover.angular - of_base.angular)};
   };
-  f.twist = against(mover.twist, base.twist);
-  f.before = against(mover.before, base.before);
-  f.R_WB = base.X_WB.rotation.toRotationMatrix();
-  f.p_WB = base.X_WB.position;
-  f.dt = dt;
-  f.margin = margin;
-  f.size = size;
-  f.mover_is_second = mover_is_second;
-  f.thresholds = thresholds;
-  return f;
+  motion.free_twist = against(mover.twist, base.twist);
+  motion.last_twist = against(mover.last_twist, base.last_twist);
+  motion.R_WB = base.X_WB.rotation.toRotationMatrix();
+  motion.p_WB = base.X_WB.position;
+  motion.dt = dt;
+  motion.margin = margin;
+  motion.size = size;
+  motion.mover_is_second = mover_is_second;
+  motion.thresholds = thresholds;
+  return motion;
 }
 
 bool is_finite(const BodyMotion& body) {
   return std::isfinite(body.X_WB.position.sum() + body.X_WB.rotation.coeffs().sum() + body.twist.linear.sum() +
-                       body.twist.angular.sum() + body.before.linear.sum() + body.before.angular.sum());
+                       body.twist.angular.sum() + body.last_twist.linear.sum() + body.last_twist.angular.sum());
 }
 
 }  // namespace
@@ -47,13 +47,13 @@ bool is_finite(const BodyMotion& body) {
 ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
                      std::size_t rows_max, const SearchThresholds& thresholds)
     : first_(std::move(first)), second_(std::move(second)), rows_(rows_max), thresholds_(thresholds) {
-  VERISIM_ASSERT(thresholds.own_free < thresholds.own_none);
-  VERISIM_ASSERT(thresholds.lean_free < thresholds.lean_none);
+  VERISIM_ASSERT(thresholds.own_face_full < thresholds.own_face_none);
+  VERISIM_ASSERT(thresholds.cone_full < thresholds.cone_none);
   VERISIM_ASSERT(first_ != nullptr);
   VERISIM_ASSERT(second_ != nullptr);
   size_ = std::numeric_limits<double>::infinity();
   for (const auto& body : {first_, second_})
-    if (!body->run_tree.nodes.empty()) size_ = std::min(size_, body->run_tree.nodes[0].half.norm());
+    if (!body->block_tree.nodes.empty()) size_ = std::min(size_, body->block_tree.nodes[0].half.norm());
   // Each step down either tree leaves one pair behind; the trees halve their items.
   constexpr std::size_t kDepthMax = 64;
   stack_.reserve(2 * kDepthMax);
@@ -68,8 +68,8 @@ void ExactLink::find(const BodyMotion& first, const BodyMotion& second, double d
   if (!is_finite(first) || !is_finite(second)) return;
   VERISIM_ASSERT(is_unit(first.X_WB.rotation));
   VERISIM_ASSERT(is_unit(second.X_WB.rotation));
-  const SearchFrame of_second = frame_of(second, first, dt, margin, size_, true, thresholds_);
-  const SearchFrame of_first = frame_of(first, second, dt, margin, size_, false, thresholds_);
+  const RelativeMotion of_second = relative_motion(second, first, dt, margin, size_, true, thresholds_);
+  const RelativeMotion of_first = relative_motion(first, second, dt, margin, size_, false, thresholds_);
   const double a = search(*second_, *first_, of_second, stack_, rows_, cost_);
   const double b = search(*first_, *second_, of_first, stack_, rows_, cost_);
   depth_max_ = std::max(a, b);

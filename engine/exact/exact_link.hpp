@@ -1,30 +1,32 @@
-// One ExactLink per pair of bodies: finds the places where their precise entities touch or may touch within the step.
+// The contacts between the precise entities of two bodies: all places where they touch or may touch by the end of the
+// step, as rows of a convex problem (convex_step.hpp). One ExactLink per pair of bodies. Source: issue "hybrid method",
+// item 7.
 //
-// Source: issue "hybrid method", item 7. Features of either body (exact_body.hpp) meet the faces of the other:
-//   - a feature's sample slides within its own segment to the place that is nearest to the face (Newton's method);
-//   - gap and normal are those of the precise surface, less the ball's radius;
-//   - trims: beyond a face's border there is no row. At a convex edge between two faces the material is where both
-//     distances are negative: the larger of the two decides, and where the sample's segment crosses from one to the
-//     other, the row is that of edge against edge, with the normal across both. At a concave edge either face has its
-//     row, so the smaller distance decides;
-//   - before anything touches, the face that would be passed last within the step decides, so that a pin that enters a
-//     hole beside its rim does not stumble over the plane around it; where it lies on one of them and slides, its last
-//     velocity says which that is;
-//   - where bodies lie flush most samples are near a face that decides nothing there, because the face across an edge
-//     does or because it looks the wrong way: these are told a run at a time and not tried one by one;
-//   - a group of segments has one row, at the place that will be nearest; where the group lies flush and is pressed
-//     on, so that its other end may be instead, that end has one too, and where the nearest place hardly holds, the
-//     firmest;
-//   - a place that cannot be the nearest because the faces there look the wrong way counts less and less, and not at
-//     all from 40 degrees on.
-// Every row appears with a gap of the margin or more and so without force, but for those of a group's ends.
+// The features of either body (exact_body.hpp) are tested against the faces of the other.
+//   Closest place   Newton's method moves a sample to the place of its segment that is closest to the face.
+//   Gap and normal  are those of the precise surface, less the radius of the feature's ball.
+//   Trim            A place whose foot is beyond the border of a face gives no row with it.
+//   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
+//                   larger distance owns the place. If the sample's segment crosses from one face to the other, the
+//                   row is that of edge against edge, with the normal perpendicular to both. At a concave edge each
+//                   face has its row, so the smaller distance counts.
+//   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
+//                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
+//                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.
+//   Culling         On coincident faces most samples are owned by another face or see the face from behind. Such
+//                   samples are rejected a block at a time (ownership_culling.hpp).
+//   Reduction       A group of segments has one row, at its closest place at the end of the step. A coincident group
+//                   has rows at its ends too. If the closest place has little weight, the candidate of the largest
+//                   weight has a row too.
+//   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25
+//                   to 40 degrees.
+// A row first appears with a gap of the margin or more and so without force, except for those of a group's ends.
 //
-// Rows are straight where motion and surfaces are curved. What they let through within one step, and take back in the
-// next, is half of how far the place moves times how far the normal turns: (v dt)^2 / 2 rho for a place that slides
-// with v along a wall with radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r.
-// Where two rims of nearly the same radius cross, their crossing runs along them faster than either moves. For that
-// there is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up
-// to 7 um.
+// Accuracy. Rows are linear; motion and surfaces are curved. Within one step a row lets through, and gives back in the
+// next, half of the place's displacement times the change of the normal: (v dt)^2 / (2 rho) for a place that slides
+// with speed v along a wall of radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r.
+// Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there is no
+// formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7 um.
 #pragma once
 
 #include <memory>
@@ -34,47 +36,48 @@
 
 namespace verisim::exact {
 
-/// Where a body is and how it would move without contact; world coordinates.
+/// Pose and velocity of a body; world coordinates.
 struct BodyMotion {
   Pose X_WB;
   Vector3d p_WC = Vector3d::Zero();  ///< centre of mass [m]
-  Twist twist;                       ///< of the centre of mass
-  Twist before = {};                 ///< in the last step, with the contacts that it had
+  Twist twist;                       ///< of the centre of mass, without contact
+  Twist last_twist = {};             ///< likewise, at the end of the last step, contacts included
 };
 
-/// What the search takes for near, flush, leaning or firm. Heuristic: chosen so that rows fade in and out instead of
-/// jumping; how little results hang on the numbers is in exact_thresholds_test.
+/// Thresholds of the search. Heuristic: chosen so that rows fade in and out instead of jumping. exact_thresholds_test
+/// says how little results depend on them.
 struct SearchThresholds {
-  /// m. A ball that a curve carries is the body's boundary where it touches the face it belongs to; elsewhere it is
-  /// within the body. Contacts fade out between these distances of their place from that face: a segment's end, where
-  /// the nearest place lies in the next segment, shall not stand for it. Above what the search's slide leaves (1e-10),
-  /// below what any clearance is (1e-5).
-  double own_free = 1e-7, own_none = 1e-6;
-  double flush = 1e-7;  ///< m: what lies in a face's plane overlaps it by less
-  /// Sines: 25 and 40 degrees. A contact whose normal leans away from all that the mover can touch with fades out
-  /// between them: a real one leans by no more than a body tilts in its fit.
-  double lean_free = 0.42, lean_none = 0.64;
-  double touching = 1e-6;  ///< m: a segment that slopes counts for the part of it that is as near as this
-  double firm = 0.5;       ///< share of its stiffness below which a place does not stand for its group alone
+  /// m. A ball that a curve carries is the body's boundary only where it touches the face that it belongs to; elsewhere
+  /// it is inside the body. A candidate's weight falls from 1 to 0 between these distances of its contact point from
+  /// that face. So the end of a segment does not stand for the closest place if that lies in the next segment. Above
+  /// the error of the closest place (1e-10), below any clearance (1e-5).
+  double own_face_full = 1e-7, own_face_none = 1e-6;
+  double coincident = 1e-7;  ///< m: a point that rests on a face overlaps it by less
+  /// Sines of 25 and 40 degrees. A contact normal should lie in the mover's normal cone at the sample. Outside of it
+  /// the contact's weight falls from 1 to 0 between these angles out of the cone: more than a body tilts in its fit.
+  double cone_full = 0.42, cone_none = 0.64;
+  double touching = 1e-6;      ///< m: a part of a segment as near as this touches
+  double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone
 };
 
-/// Work of one search; deterministic.
+/// Work of one search. The same for the same input.
 struct SearchCost {
-  std::uint64_t samples = 0;  ///< compared with a face
-  std::uint64_t slides = 0;   ///< that slid to where they are nearest
+  std::uint64_t samples = 0;         ///< compared with a face
+  std::uint64_t closest_places = 0;  ///< of a segment, found by Newton's method
   std::uint64_t rows = 0;
 };
 
 class ExactLink {
  public:
-  /// @pre neither is null; where contacts fade, `free` is below `none`
+  /// @pre neither is null; each `full` threshold is below its `none`
   ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
             std::size_t rows_max = 4096, const SearchThresholds& thresholds = {});
 
-  /// Fills `rows` with every place whose gap is at most `margin` [m] (add the distance that the bodies can close within
-  /// the step). The list is in the order of features and faces, whatever the poses. No allocation.
-  /// A motion that is not finite gives no row. @pre dt is finite and above 0; margin >= 0; rotations are unit, if
-  /// finite
+  /// Replaces rows() by the contacts of these poses. No allocation. A pose or velocity that is not finite gives no row.
+  /// The order of rows is that of features and faces, whatever the poses.
+  /// @param dt      s, the step
+  /// @param margin  m, largest gap that makes a row; include the distance that the bodies can close within the step
+  /// @pre dt is finite and above 0; margin >= 0; rotations are unit, if finite
   void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
 
   [[nodiscard]] const RowList& rows() const { return rows_; }

@@ -3,21 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim::exact {
 namespace {
 
-constexpr double kSegmentMax = pinned::kPi / 8;  // rad: the search's series for sine and cosine are made for half of it
+constexpr double kSegmentMax = pinned::kPi / 8;  // rad: place_at's series hold for half of it
 
 /// A sample before it is stored.
 struct Sample {
   double c = 0, s = 0;
-  std::vector<Vector3d> wedge;
+  std::vector<Vector3d> tangent_cone;
 };
 
-/// A curve as a feature has it, and how it is cut.
-struct Cut {
+/// A curve and its division into segments.
+struct Segmentation {
   Feature::Kind kind;
   Vector3d origin, x, y;
   double from = 0, width = 0;  ///< of a segment, in t
@@ -38,47 +39,46 @@ struct Cut {
   }
 };
 
-void cut_evenly(Cut& cut, double from, double to, double longest) {
+void split_evenly(Segmentation& split, double from, double to, double longest) {
   if (!(to > from) || !std::isfinite(to - from)) return;
-  cut.segments = std::max(1, static_cast<int>(std::ceil((to - from) / longest - 1e-9)));
-  cut.from = from;
-  cut.width = (to - from) / cut.segments;
+  split.segments = std::max(1, static_cast<int>(std::ceil((to - from) / longest - 1e-9)));
+  split.from = from;
+  split.width = (to - from) / split.segments;
 }
 
-Cut cut_of(const Curve& curve, const std::array<double, 2>& t_range, double spacing) {
-  Cut cut{Feature::Kind::line, Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+Segmentation segmentation_of(const Curve& curve, const std::array<double, 2>& t_range, double spacing) {
+  Segmentation split{Feature::Kind::line, Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
   const auto arc = [&](const auto& c, double along_x, double along_y) {
-    cut.kind = Feature::Kind::arc;
-    cut.origin = c.center;
-    cut.x = along_x * c.x_axis;
-    cut.y = along_y * c.normal.cross(c.x_axis);
+    split.kind = Feature::Kind::arc;
+    split.origin = c.center;
+    split.x = along_x * c.x_axis;
+    split.y = along_y * c.normal.cross(c.x_axis);
     const double wider = std::max(along_x, along_y);
-    if (wider > 0) cut_evenly(cut, t_range[0], t_range[1], std::min(spacing / wider, kSegmentMax));
+    if (wider > 0) split_evenly(split, t_range[0], t_range[1], std::min(spacing / wider, kSegmentMax));
   };
-  if (const auto* line = std::get_if<Line>(&curve)) {
-    cut.origin = line->point;
-    cut.x = line->direction;
-    cut_evenly(cut, t_range[0], t_range[1], spacing);
-  } else if (const auto* circle = std::get_if<Circle>(&curve)) {
-    arc(*circle, circle->radius, circle->radius);
-  } else if (const auto* ellipse = std::get_if<Ellipse>(&curve)) {
-    arc(*ellipse, ellipse->major_radius, ellipse->minor_radius);
-  }
-  return cut;
+  std::visit(Overloaded{[&](const Line& c) {
+                          split.origin = c.point;
+                          split.x = c.direction;
+                          split_evenly(split, t_range[0], t_range[1], spacing);
+                        },
+                        [&](const Circle& c) { arc(c, c.radius, c.radius); },
+                        [&](const Ellipse& c) { arc(c, c.major_radius, c.minor_radius); }, [](const OtherCurve&) {}},
+             curve);
+  return split;
 }
 
-Feature feature_of(const Cut& cut, const BodyOptions& options) {
+Feature feature_of(const Segmentation& split, const BodyOptions& options) {
   Feature f;
-  f.kind = cut.kind;
-  f.origin = cut.origin;
-  f.x = cut.x;
-  f.y = cut.y;
-  f.half_width = 0.5 * cut.width;
-  f.reach = f.half_width * std::max(cut.x.norm(), cut.y.norm());
-  f.stiffness = 2 * f.reach * options.line_stiffness;
-  const bool is_arc = cut.kind == Feature::Kind::arc;
-  f.group = is_arc ? static_cast<std::uint32_t>(
-                         std::clamp(static_cast<int>(options.group_angle / cut.width), 1, static_cast<int>(kGroupMax)))
+  f.kind = split.kind;
+  f.origin = split.origin;
+  f.x = split.x;
+  f.y = split.y;
+  f.half_width = 0.5 * split.width;
+  f.half_length = f.half_width * std::max(split.x.norm(), split.y.norm());
+  f.stiffness = 2 * f.half_length * options.line_stiffness;
+  const bool is_arc = split.kind == Feature::Kind::arc;
+  f.group = is_arc ? static_cast<std::uint32_t>(std::clamp(static_cast<int>(options.group_angle / split.width), 1,
+                                                           static_cast<int>(kGroupMax)))
                    : kGroupMax;
   return f;
 }
@@ -89,12 +89,13 @@ void add(ExactBody& body, const Feature& feature, std::span<const Sample> sample
   body.features.push_back(feature);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto at = static_cast<std::uint32_t>(body.sample_c.size());
-    if (i % kRun == 0) body.runs.push_back({number, at, at});
-    ++body.runs.back().end;
+    if (i % kBlockSize == 0) body.blocks.push_back({number, at, at});
+    ++body.blocks.back().end;
     body.sample_c.push_back(samples[i].c);
     body.sample_s.push_back(samples[i].s);
-    body.wedges.insert(body.wedges.end(), samples[i].wedge.begin(), samples[i].wedge.end());
-    body.wedge_begin.push_back(static_cast<std::uint32_t>(body.wedges.size()));
+    body.cone_directions.insert(body.cone_directions.end(), samples[i].tangent_cone.begin(),
+                                samples[i].tangent_cone.end());
+    body.cone_begin.push_back(static_cast<std::uint32_t>(body.cone_directions.size()));
   }
 }
 
@@ -107,20 +108,20 @@ void add_point(ExactBody& body, const Vector3d& point, double radius, std::uint3
   add(body, f, std::span(&sample, 1));
 }
 
-/// The balls that fill a cone touch it all around at right angles to its side: a ball whose middle is at t touches at
-/// the height v with t = v + r(v) tan, and has the radius (r(0) + t tan) cos.
+/// The axis of a cone with the balls that are inscribed in it. A ball touches the cone at right angles to its side:
+/// with its centre at t it touches at the height v, where t = v + r(v) tan, and has the radius (r(0) + t tan) cos.
 void add_cone_axis(ExactBody& body, const Cone& cone, const std::array<double, 2>& range, std::uint32_t number) {
   const double cosine = pinned::cos(cone.half_angle);
   const double tangent = pinned::tan(cone.half_angle);
   const auto middle = [&](double v) { return v + std::max(0.0, cone.radius + v * tangent) * tangent; };
-  Cut cut{Feature::Kind::line, cone.point, cone.direction, Vector3d::Zero()};
-  cut_evenly(cut, middle(range[0]), middle(range[1]), body.options.spacing / cosine);
+  Segmentation split{Feature::Kind::line, cone.point, cone.direction, Vector3d::Zero()};
+  split_evenly(split, middle(range[0]), middle(range[1]), body.options.spacing / cosine);
   std::vector<Sample> samples;
-  for (int i = 0; i < cut.segments; ++i) samples.push_back(cut.sample_at(cut.from + (i + 0.5) * cut.width));
-  Feature f = feature_of(cut, body.options);
+  for (int i = 0; i < split.segments; ++i) samples.push_back(split.sample_at(split.from + (i + 0.5) * split.width));
+  Feature f = feature_of(split, body.options);
   f.radius = cone.radius * cosine;
-  f.growth = pinned::sin(cone.half_angle);
-  f.stiffness *= cosine;  // a segment's length along the cone's side
+  f.radius_slope = pinned::sin(cone.half_angle);
+  f.stiffness *= cosine;  // of the segment's length along the cone's side
   f.own_face = number;
   f.against_round_only = true;
   if (!samples.empty()) add(body, f, samples);
@@ -132,20 +133,20 @@ void add_apex(ExactBody& body, const Cone& cone, double at) {
   const double along = pinned::cos(cone.half_angle);
   const Vector3d y = cone.direction.cross(cone.x_axis);
   for (const Vector3d& across : {cone.x_axis, Vector3d(-cone.x_axis), y, Vector3d(-y)})
-    sample.wedge.emplace_back(along * cone.direction + out * across);
+    sample.tangent_cone.emplace_back(along * cone.direction + out * across);
   add_point(body, cone.point + at * cone.direction, 0, kNoFace, sample);
 }
 
 void add_cone(ExactBody& body, const Cone& cone, const std::array<double, 2>& range, std::uint32_t number) {
-  constexpr double kNear = 1e-9;  // m: what rounding of the bounds may leave
+  constexpr double kNear = 1e-9;  // m: rounding of the bounds
   add_cone_axis(body, cone, range, number);
   const double to_apex = -cone.radius / pinned::tan(cone.half_angle);
   if (range[0] < to_apex + kNear) add_apex(body, cone, to_apex);
 }
 
-/// Moves a point onto both surfaces. Their normals are not parallel along an edge that has a fold; along a smooth one
-/// the point goes as near as the two allow.
-Vector3d put_onto(const PreciseSurface* first, const PreciseSurface* second, Vector3d p) {
+/// Projects a point onto both surfaces in turn. Their normals are not parallel along a sharp edge, so this converges to
+/// their intersection; along a smooth edge the point ends near both.
+Vector3d projected(const PreciseSurface* first, const PreciseSurface* second, Vector3d p) {
   constexpr int kRounds = 30;  // each halves the error where the faces meet at 45 degrees or more
   for (int i = 0; i < kRounds; ++i) {
     for (const PreciseSurface* surface : {first, second}) {
@@ -162,41 +163,43 @@ Vector3d put_onto(const PreciseSurface* first, const PreciseSurface* second, Vec
 std::vector<Vector3d> points_along(const Edge& edge, double spacing, const PreciseSurface* first,
                                    const PreciseSurface* second) {
   std::vector<Vector3d> points;
-  const Cut cut = cut_of(edge.curve, edge.t_range, spacing);
-  for (int i = 0; cut.segments > 0 && i <= cut.segments; ++i) points.push_back(cut.point_at(cut.from + i * cut.width));
+  const Segmentation split = segmentation_of(edge.curve, edge.t_range, spacing);
+  for (int i = 0; split.segments > 0 && i <= split.segments; ++i)
+    points.push_back(split.point_at(split.from + i * split.width));
   if (std::holds_alternative<OtherCurve>(edge.curve)) {
-    for (const Vector3d& p : edge.polyline) points.push_back(put_onto(first, second, p));
+    for (const Vector3d& p : edge.polyline) points.push_back(projected(first, second, p));
   }
   return points;
 }
 
 void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made, const std::vector<Vector3d>& points,
                        const std::array<double, 2>& side_sign) {
-  if (made.fold == Fold::concave) return;
-  const auto add_wedge = [&](Sample& sample, const Vector3d& p, const Vector3d& tangent) {
+  if (made.convexity == Convexity::concave) return;
+  const auto add_tangent_cone = [&](Sample& sample, const Vector3d& p, const Vector3d& tangent) {
     for (std::size_t side = 0; side < 2; ++side) {
       const auto& surface = body.faces[made.faces[side]].surface;
-      if (surface) sample.wedge.emplace_back(-side_sign[side] * tangent.cross(surface->at(p).normal).normalized());
+      if (surface)
+        sample.tangent_cone.emplace_back(-side_sign[side] * tangent.cross(surface->at(p).normal).normalized());
     }
   };
-  const Cut cut = cut_of(edge.curve, edge.t_range, body.options.spacing);
+  const Segmentation split = segmentation_of(edge.curve, edge.t_range, body.options.spacing);
   std::vector<Sample> samples;
-  for (int i = 0; i < cut.segments; ++i) {
-    const double t = cut.from + (i + 0.5) * cut.width;
-    samples.push_back(cut.sample_at(t));
-    add_wedge(samples.back(), cut.point_at(t), cut.tangent_at(samples.back()));
+  for (int i = 0; i < split.segments; ++i) {
+    const double t = split.from + (i + 0.5) * split.width;
+    samples.push_back(split.sample_at(t));
+    add_tangent_cone(samples.back(), split.point_at(t), split.tangent_at(samples.back()));
   }
-  if (!samples.empty()) add(body, feature_of(cut, body.options), samples);
+  if (!samples.empty()) add(body, feature_of(split, body.options), samples);
   if (!std::holds_alternative<OtherCurve>(edge.curve)) return;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {  // a curve of another kind: its chords
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {  // freeform: the chords of its polyline
     const Vector3d chord = points[i + 1] - points[i];
-    Cut line{Feature::Kind::line, points[i], chord.normalized(), Vector3d::Zero()};
-    cut_evenly(line, 0, chord.norm(), body.options.spacing);
+    Segmentation line{Feature::Kind::line, points[i], chord.normalized(), Vector3d::Zero()};
+    split_evenly(line, 0, chord.norm(), body.options.spacing);
     samples.clear();
     for (int j = 0; j < line.segments; ++j) {
       const double t = line.from + (j + 0.5) * line.width;
       samples.push_back(line.sample_at(t));
-      add_wedge(samples.back(), line.point_at(t), line.x);
+      add_tangent_cone(samples.back(), line.point_at(t), line.x);
     }
     if (!samples.empty()) add(body, feature_of(line, body.options), samples);
   }
@@ -204,37 +207,46 @@ void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made,
 
 void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) {
   const auto add_curve = [&](const Curve& curve, const std::array<double, 2>& range, double radius, bool round_only) {
-    const Cut cut = cut_of(curve, range, body.options.spacing);
+    const Segmentation split = segmentation_of(curve, range, body.options.spacing);
     std::vector<Sample> samples;
-    for (int i = 0; i < cut.segments; ++i) samples.push_back(cut.sample_at(cut.from + (i + 0.5) * cut.width));
-    Feature f = feature_of(cut, body.options);
+    for (int i = 0; i < split.segments; ++i) samples.push_back(split.sample_at(split.from + (i + 0.5) * split.width));
+    Feature f = feature_of(split, body.options);
     f.radius = radius;
     f.own_face = number;
     f.against_round_only = round_only;
     if (!samples.empty()) add(body, f, samples);
   };
-  if (const auto* ball = std::get_if<Sphere>(&face.surface); ball != nullptr && !ball->hole) {
-    add_point(body, ball->center, ball->radius, number, {});
-  } else if (const auto* torus = std::get_if<Torus>(&face.surface); torus != nullptr && !torus->hole) {
-    add_curve(Circle{torus->center, torus->direction, torus->x_axis, torus->major_radius}, face.u_range,
-              torus->minor_radius, false);
-  } else if (const auto* pin = std::get_if<Cylinder>(&face.surface); pin != nullptr && !pin->hole) {
-    add_curve(Line{pin->point, pin->direction}, face.v_range, pin->radius, true);
-  } else if (const auto* cone = std::get_if<Cone>(&face.surface); cone != nullptr && !cone->hole) {
-    add_cone(body, *cone, face.v_range, number);
-  }
+  std::visit(
+      Overloaded{
+          [](const Plane&) {},
+          [&](const Cylinder& s) {
+            if (!s.hole) add_curve(Line{s.point, s.direction}, face.v_range, s.radius, true);
+          },
+          [&](const Cone& s) {
+            if (!s.hole) add_cone(body, s, face.v_range, number);
+          },
+          [&](const Sphere& s) {
+            if (!s.hole) add_point(body, s.center, s.radius, number, {});
+          },
+          [&](const Torus& s) {
+            if (s.hole) return;
+            add_curve(Circle{s.center, s.direction, s.x_axis, s.major_radius}, face.u_range, s.minor_radius, false);
+          },
+          [](const OtherSurface&) {}},
+      face.surface);
 }
 
 namespace {
 
-/// Is the corner in which two edges of a face end less than half a turn wide, seen from the face?
-bool is_pointed(const EdgeEnd& a, std::size_t side_a, const EdgeEnd& b, std::size_t side_b) {
-  constexpr double kPointed = 0.25;  // a curve's first chord leaves its tangent by up to pi / 16
-  return b.into.dot(a.out_of[side_a]) < -kPointed && a.into.dot(b.out_of[side_b]) < -kPointed;
+/// True if the corner of a face in which two of its edges end is convex: its angle within the face is below 180
+/// degrees.
+bool is_convex_corner(const EdgeEnd& a, std::size_t side_a, const EdgeEnd& b, std::size_t side_b) {
+  constexpr double kConvexCorner = 0.25;  // sine; a curve's first chord leaves its tangent by up to pi / 16
+  return b.into.dot(a.outward[side_a]) < -kConvexCorner && a.into.dot(b.outward[side_b]) < -kConvexCorner;
 }
 
-/// Convex edges between a face with a pointed corner and its neighbours: they go on to speak for that face.
-void take_pointed_corners(ExactBody& body, std::span<const EdgeEnd* const> here) {
+/// Edges of a face that end in a convex corner of it limit that face beyond the corner too.
+void limit_beyond_convex_corners(ExactBody& body, std::span<const EdgeEnd* const> here) {
   for (const EdgeEnd* a : here) {
     ExactEdge& edge = body.edges[a->edge];
     for (const EdgeEnd* b : here) {
@@ -242,14 +254,15 @@ void take_pointed_corners(ExactBody& body, std::span<const EdgeEnd* const> here)
       const ExactEdge& next = body.edges[b->edge];
       for (std::size_t i = 0; i < 2; ++i)
         for (std::size_t j = 0; j < 2; ++j)
-          if (edge.faces[i] == next.faces[j] && is_pointed(*a, i, *b, j)) edge.speaks_beyond[i][a->which] = true;
+          if (edge.faces[i] == next.faces[j] && is_convex_corner(*a, i, *b, j))
+            edge.limits_beyond_end[i][a->which] = true;
     }
   }
 }
 
 }  // namespace
 
-void take_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
+void add_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
   constexpr double kSame = 1e-7;  // m: ends nearer than this are one corner
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EdgeEnd& a, const EdgeEnd& b) { return a.point.x() < b.point.x(); });
@@ -263,24 +276,24 @@ void take_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
       used[j] = true;
       here.push_back(&ends[j]);
     }
-    const auto is_convex = [&](const EdgeEnd* end) { return body.edges[end->edge].fold == Fold::convex; };
+    const auto is_convex = [&](const EdgeEnd* end) { return body.edges[end->edge].convexity == Convexity::convex; };
     if (here.size() < 3) continue;
-    take_pointed_corners(body, here);
+    limit_beyond_convex_corners(body, here);
     if (!std::all_of(here.begin(), here.end(), is_convex)) continue;
     Sample sample;
     for (const EdgeEnd* end : here) {
-      for (auto& to_face : body.edges[end->edge].speaks_beyond) to_face[end->which] = true;
-      sample.wedge.push_back(end->into);
+      for (auto& to_face : body.edges[end->edge].limits_beyond_end) to_face[end->which] = true;
+      sample.tangent_cone.push_back(end->into);
     }
     add_point(body, ends[i].point, 0, kNoFace, sample);
   }
 }
 
-Bounds bounds_of(const ExactBody& body, const Run& run) {
-  const Feature& f = body.features[run.feature];
+Bounds bounds_of(const ExactBody& body, const SampleBlock& block) {
+  const Feature& f = body.features[block.feature];
   Bounds bounds;
-  for (std::uint32_t i = run.begin; i < run.end; ++i) {
-    const Vector3d margin = Vector3d::Constant(f.radius_at(body.sample_c[i]) + (1 + f.growth) * f.reach);
+  for (std::uint32_t i = block.begin; i < block.end; ++i) {
+    const Vector3d margin = Vector3d::Constant(f.radius_at(body.sample_c[i]) + (1 + f.radius_slope) * f.half_length);
     const Vector3d p = f.origin + body.sample_c[i] * f.x + body.sample_s[i] * f.y;
     bounds.include(p - margin);
     bounds.include(p + margin);

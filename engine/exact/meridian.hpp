@@ -1,6 +1,8 @@
 // A curve seen from a surface: its distance from it, with the first two derivatives along the curve and the change
 // within the step, in the surface's own axes, where a handful of multiplications are enough. The search's innermost
-// loop. Private to this folder.
+// loop, and the one place beside engine/geometry/analytic_surface.hpp that writes out the distance of each kind: fixed
+// at compile time, without vectors, with derivatives that nobody else needs. tests/exact/meridian_test.cpp holds it
+// against that one. Private to this folder.
 #pragma once
 
 #include <cmath>
@@ -14,8 +16,8 @@ namespace verisim::exact {
 struct CurveFromSurface {
   Vector3d origin, x, y, shift, turn;
   bool is_arc;
-  PreciseSurface::Kind kind;
-  double side, radius, ring, cosine, sine, tangent;
+  Meridian surface;
+  double side;
 };
 
 struct Measure {
@@ -25,8 +27,8 @@ struct Measure {
   double change;    ///< m, of the distance within the step
 };
 
-/// At one place, c and s as in ExactBody::sample_c. `kKind`: sphere and torus are one kind.
-template <PreciseSurface::Kind kKind, bool kIsArc>
+/// At one place, c and s as in ExactBody::sample_c. A sphere is a torus whose ring has no radius.
+template <SurfaceKind kKind, bool kIsArc>
 [[gnu::always_inline]] inline Measure measure(const CurveFromSurface& f, double c, double s) {
   // X, Y, Z: the place; T: first, B: second derivative.
   const double X = f.origin.x() + c * f.x.x() + s * f.y.x();
@@ -41,24 +43,25 @@ template <PreciseSurface::Kind kKind, bool kIsArc>
   const double MX = f.shift.x() + f.turn.y() * Z;  // less what turns about the axis and so along the surface
   const double MY = f.shift.y() - f.turn.x() * Z;
   const double MZ = f.shift.z() + f.turn.x() * Y - f.turn.y() * X;
-  if constexpr (kKind == PreciseSurface::Kind::plane) return {Z, TZ, BZ, MZ};
+  if constexpr (kKind == SurfaceKind::plane) return {Z, TZ, BZ, MZ};
   const double rho = std::sqrt(X * X + Y * Y);
   const double per_rho = 1 / (rho + 1e-300);  // on the axis: no slope
   const double rho1 = (X * TX + Y * TY) * per_rho;
   const double rho2 = (TX * TX + TY * TY - rho1 * rho1 + X * BX + Y * BY) * per_rho;
   const double away = (X * MX + Y * MY) * per_rho;
-  if constexpr (kKind == PreciseSurface::Kind::cylinder)
-    return {f.side * (rho - f.radius), f.side * rho1, f.side * rho2, f.side * away};
-  if constexpr (kKind == PreciseSurface::Kind::cone) {
-    return {f.side * f.cosine * (rho - f.radius - Z * f.tangent), f.side * (f.cosine * rho1 - f.sine * TZ),
-            f.side * (f.cosine * rho2 - f.sine * BZ), f.side * (f.cosine * away - f.sine * MZ)};
+  const Meridian& m = f.surface;
+  if constexpr (kKind == SurfaceKind::cylinder)
+    return {f.side * (rho - m.radius), f.side * rho1, f.side * rho2, f.side * away};
+  if constexpr (kKind == SurfaceKind::cone) {
+    return {f.side * m.cosine * (rho - m.radius - Z * m.tangent), f.side * (m.cosine * rho1 - m.sine * TZ),
+            f.side * (m.cosine * rho2 - m.sine * BZ), f.side * (m.cosine * away - m.sine * MZ)};
   }
-  const double q = rho - f.ring;
+  const double q = rho - m.ring;
   const double tube = std::sqrt(q * q + Z * Z);
   const double per_tube = 1 / (tube + 1e-300);
   const double tube1 = (q * rho1 + Z * TZ) * per_tube;
   const double tube2 = (rho1 * rho1 + q * rho2 + TZ * TZ + Z * BZ - tube1 * tube1) * per_tube;
-  return {f.side * (tube - f.radius), f.side * tube1, f.side * tube2, f.side * (q * away + Z * MZ) * per_tube};
+  return {f.side * (tube - m.radius), f.side * tube1, f.side * tube2, f.side * (q * away + Z * MZ) * per_tube};
 }
 
 /// @param shift, turn  of the curve within the step, in the coordinates of the surface's body
@@ -71,35 +74,30 @@ template <PreciseSurface::Kind kKind, bool kIsArc>
           s.to_own_axes(shift + turn.cross(s.point())),
           s.to_own_axes(turn),
           is_arc,
-          s.kind(),
-          s.side(),
-          s.radius(),
-          s.ring_radius(),
-          s.cosine(),
-          s.sine(),
-          s.tangent()};
+          s.meridian(),
+          s.side()};
 }
 
 /// Calls f with the measure of the curve's kinds as a function of (c, s).
 template <typename F>
 inline void with_measure(const CurveFromSurface& curve, F&& f) {
-  using Kind = PreciseSurface::Kind;
-  const auto of_kind = [&]<Kind kKind>() {
+  const auto of_kind = [&]<SurfaceKind kKind>() {
     if (curve.is_arc) {
       f([&](double c, double s) { return measure<kKind, true>(curve, c, s); });
     } else {
       f([&](double c, double s) { return measure<kKind, false>(curve, c, s); });
     }
   };
-  switch (curve.kind) {
-    case Kind::plane:
-      return of_kind.template operator()<Kind::plane>();
-    case Kind::cylinder:
-      return of_kind.template operator()<Kind::cylinder>();
-    case Kind::cone:
-      return of_kind.template operator()<Kind::cone>();
-    default:
-      return of_kind.template operator()<Kind::torus>();
+  switch (curve.surface.kind) {
+    case SurfaceKind::plane:
+      return of_kind.template operator()<SurfaceKind::plane>();
+    case SurfaceKind::cylinder:
+      return of_kind.template operator()<SurfaceKind::cylinder>();
+    case SurfaceKind::cone:
+      return of_kind.template operator()<SurfaceKind::cone>();
+    case SurfaceKind::sphere:
+    case SurfaceKind::torus:
+      return of_kind.template operator()<SurfaceKind::torus>();
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 using Chart = std::array<double, 2>;
 
 constexpr int kCellsMax = 48;
-constexpr double kTurn = 4;  ///< once around, in turns of PreciseSurface::chart
+constexpr double kTurn = 4;  ///< once around, in turns of AnalyticSurface::chart
 
 /// How the chart's two coordinates run for a kind of surface.
 struct Layout {
@@ -21,21 +21,23 @@ struct Layout {
 
 Layout layout_of(const PreciseSurface& s, double widest_radius) {
   const double per_turn = 2 * pinned::kPi / kTurn;
+  const double radius = s.meridian().radius;
   switch (s.kind()) {
-    case PreciseSurface::Kind::plane:
+    case SurfaceKind::plane:
       return {false, false, 1, 1};
-    case PreciseSurface::Kind::sphere:
-      return {true, false, per_turn * s.radius(), s.radius()};
-    case PreciseSurface::Kind::torus:
-      return {true, true, per_turn * (s.ring_radius() + s.radius()), per_turn * s.radius()};
-    default:
+    case SurfaceKind::cylinder:
+    case SurfaceKind::cone:
       return {true, false, per_turn * widest_radius, 1};
+    case SurfaceKind::sphere:
+      return {true, false, per_turn * radius, radius};
+    case SurfaceKind::torus:
+      break;
   }
+  return {true, true, per_turn * (s.meridian().ring + radius), per_turn * radius};
 }
 
 double distance_from_axis(const PreciseSurface& s, const Vector3d& p) {
-  const Vector3d d = p - s.point();
-  return (d - d.dot(s.axis()) * s.axis()).norm();
+  return profile_of(p, s.point(), s.axis(), [] { return Vector3d::Zero(); }).rho;
 }
 
 /// Calls visit(point) at places of the triangle no farther apart than `step`, corners included.
@@ -89,7 +91,7 @@ Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<co
   // The chart's extent.
   Chart low{1e300, 1e300};
   Chart high{-1e300, -1e300};
-  double widest = surface.radius();
+  double widest = surface.meridian().radius;
   const auto include = [&](const Vector3d& p) {
     const Chart c = surface.chart(p);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -133,14 +135,14 @@ Trim::Trim(const PreciseSurface& surface, const TriangleMesh& mesh, std::span<co
   // A ball's pole is one place of all the last cells, and to rounding of those beyond them, which are nowhere else.
   const auto row = [&](int b) { return cells_.begin() + std::ptrdiff_t{b} * a_.count; };
   constexpr double kPole = 1 - 1e-9;
-  if (surface.kind() == PreciseSurface::Kind::sphere) {
+  if (surface.kind() == SurfaceKind::sphere) {
     if (low[1] < -kPole) std::copy_n(row(1), a_.count, row(0));
     if (high[1] > kPole) std::copy_n(row(b_.count - 2), a_.count, row(b_.count - 1));
   }
 
   // Cells that an edge passes, and their neighbours.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> passes;  // cell, edge
-  const bool has_poles = surface.kind() == PreciseSurface::Kind::sphere;
+  const bool has_poles = surface.kind() == SurfaceKind::sphere;
   const auto mark = [&](const Vector3d& p, std::uint32_t edge) {
     const Chart chart = surface.chart(p);
     const int at = cell_at(chart);

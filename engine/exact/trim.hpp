@@ -1,6 +1,14 @@
 // Which part of a surface belongs to a face: a raster over the surface's chart whose cells are outside the face, inside
 // it, or near its border. Near the border a cell names the edges that pass; the search then looks at the faces beyond
 // them (exact_link.hpp), so that the raster decides nothing finer than a cell.
+//
+// engine/voxel/trim.hpp knows the same of a face by other means, for it answers another question. The association asks
+// once per voxel, when a body is loaded: yes or no, to rounding, of points that no bound is near, by counting how often
+// a path crosses the bounds in closed form (10 ns per bound that is crossed). A contact asks in every step, wherever
+// its foot slides to, and wants to know more near a border (which edges pass, so that the face beyond can be asked) and
+// to be told in 10 ns whatever the number of bounds; an edge without an equation has to be as good as a circle. A
+// raster could not give the first its sharpness, and the path could not give the second its neighbours. What both need
+// of the surface, its chart and its turns, is engine/geometry/analytic_surface.hpp's.
 #pragma once
 
 #include <cstdint>

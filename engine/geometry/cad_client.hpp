@@ -1,5 +1,5 @@
-// Asks the CAD program (verisim-cad) and waits for its answer, whatever becomes of it: it may crash or hang on a
-// damaged file, and that is bad input here.
+// Requests to the CAD program (verisim-cad), a child process. A damaged file may crash it or make it hang; here that is
+// bad input.
 #pragma once
 
 #include <string>

@@ -1,9 +1,9 @@
 // Boundary-representation entities of a part: its faces (on plane, cylinder, cone, sphere, torus, or another surface)
 // and edges (on line, circle, ellipse, or another curve), each of its own type, with exact parameters.
 //
-// All in part coordinates [m, rad], right-handed. Directions and normals are unit. Which side material is on is part of
-// the entity: a plane's normal points out of the material; a round face says whether it is a hole (its axis or centre
-// lies outside the material next to the face) or a pin.
+// All in part coordinates [m, rad], right-handed. Directions and normals are unit. An entity knows its material's side:
+// a plane's normal points out of the material; `hole` of a curved surface is true if its axis or centre lies outside of
+// the material next to the face.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@
 namespace verisim {
 
 // --- surfaces -------------------------------------------------------------------------------------------------------
-// The parametrization of each is that of a right-handed local frame: x_axis, y = direction x x_axis, direction.
+// Each is parametrized in right-handed local coordinates with the axes x_axis, y = direction x x_axis, direction.
 
 struct Plane {
   Vector3d point;   ///< any point of the plane
@@ -68,7 +68,8 @@ struct Torus {
 struct OtherSurface {};
 
 using Surface = std::variant<Plane, Cylinder, Cone, Sphere, Torus, OtherSurface>;
-inline constexpr std::array<const char*, 6> kSurfaceNames = {"plane", "cylinder", "cone", "sphere", "torus", "other"};
+inline constexpr std::array kSurfaceNames = {"plane", "cylinder", "cone", "sphere", "torus", "other"};
+static_assert(kSurfaceNames.size() == std::variant_size_v<Surface>, "each kind of surface has a name");
 
 // --- curves ---------------------------------------------------------------------------------------------------------
 
@@ -98,7 +99,8 @@ struct Ellipse {
 struct OtherCurve {};
 
 using Curve = std::variant<Line, Circle, Ellipse, OtherCurve>;
-inline constexpr std::array<const char*, 4> kCurveNames = {"line", "circle", "ellipse", "other"};
+inline constexpr std::array kCurveNames = {"line", "circle", "ellipse", "other"};
+static_assert(kCurveNames.size() == std::variant_size_v<Curve>, "each kind of curve has a name");
 
 // --- topology -------------------------------------------------------------------------------------------------------
 
@@ -114,8 +116,8 @@ struct Edge {
   Curve curve;
   std::array<double, 2> t_range = {0, 0};  ///< trimmed bounds in the curve's parameter
   double length = 0;                       ///< m
-  std::vector<Vector3d> polyline;          ///< points along the edge, as the tessellation has them
-  std::vector<std::uint32_t> faces;  ///< the two faces that it bounds; one: a seam, where a round face meets itself
+  std::vector<Vector3d> polyline;          ///< points along the edge, those of the tessellation
+  std::vector<std::uint32_t> faces;  ///< the two faces that it bounds; one: a seam, where a curved face meets itself
 };
 
 }  // namespace verisim

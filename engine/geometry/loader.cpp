@@ -56,7 +56,8 @@ void check_options(const std::string& path, const LoadOptions& options) {
   }
 }
 
-/// What the kernel would take minutes over, or half of: seen before it is asked.
+/// Checks a CAD file's begin and end before the kernel reads it: the kernel would take minutes over a wrong file, or
+/// load half of a truncated one.
 void check_cad_content(const std::string& path, const std::string& content, Family family) {
   if (family == Family::brep) {
     if (content.find("CASCADE Topology V") != std::string::npos) return;
@@ -117,7 +118,7 @@ std::vector<Part> parts_from(const Message& answer) {
   return parts;
 }
 
-/// Repairs the mesh, fills in what follows from it and says what stays wrong.
+/// Repairs the mesh, sets the part's mass properties and notes the remaining defects.
 Part finished_mesh(Part part, const std::string& path) {
   repair(part.mesh, part.notes);
   if (part.mesh.triangles.empty()) {

@@ -1,6 +1,6 @@
-// Reads models into parts, in a child process (program verisim-cad beside this one): STEP, BREP and Solids through
-// OpenCASCADE, STL, OBJ, PLY and glTF through assimp. Neither is thread-safe for us, some files crash the one or make
-// the other read for ever, and both must be bad input here. About 20 ms for starting the program.
+// Reads models into parts: STEP, BREP and Solids through OpenCASCADE, STL, OBJ, PLY and glTF through assimp. Both run
+// in a child process (program verisim-cad beside this one), because neither is thread-safe, and some files crash the
+// one or make the other read for ever. Here that is bad input. About 20 ms for starting the program.
 //
 // Errors: Error(input) naming the file, what is wrong and what to do: empty, truncated, damaged, no solid or triangle
 // in it, NaN. A mesh that stays open, non-manifold or self-intersecting after repair loads: its part is not watertight
@@ -37,12 +37,8 @@ struct LoadOptions {
 /// wrote.
 void write_step(const std::string& path, const std::vector<std::pair<std::string, Solid>>& solids);
 
-/// Binary STL in the mesh's own units times `units_per_metre` (1000: millimetres).
-/// @pre is_whole(mesh); units_per_metre is finite and above 0
-void write_stl(const std::string& path, const TriangleMesh& mesh, double units_per_metre);
-
-/// One sentence per thing that should be questioned before simulating: a part larger than 100 m or smaller than 10 um
+/// Warnings, one sentence each, about what is probably a mistake: a part larger than 100 m or smaller than 10 um
 /// in its longest direction (a model in millimetres read as metres), with the scale that would make it plausible.
-[[nodiscard]] std::vector<std::string> questions_about(const Part& part);
+[[nodiscard]] std::vector<std::string> warnings_about(const Part& part);
 
 }  // namespace verisim

@@ -1,4 +1,4 @@
-// Several solids that move as one, as one part: meshes, faces and edges one after the other.
+// Merges several solids that move as one into one part: meshes, faces and edges one after the other.
 #pragma once
 
 #include <vector>

@@ -109,30 +109,4 @@ MeshReport examine(const TriangleMesh& mesh, bool thorough) {
   return report;
 }
 
-TriangleMesh subdivide(const TriangleMesh& mesh) {
-  VERISIM_ASSERT(is_whole(mesh));
-  TriangleMesh fine;
-  fine.vertices = mesh.vertices;
-  fine.triangles.reserve(4 * mesh.triangles.size());
-  std::unordered_map<std::uint64_t, std::uint32_t> midpoint_of_edge;  // looked up only, never walked
-  const auto midpoint = [&](std::uint32_t i, std::uint32_t j) {
-    const std::uint64_t key = (std::uint64_t{std::min(i, j)} << 32) | std::max(i, j);
-    const auto [entry, is_new] = midpoint_of_edge.try_emplace(key, static_cast<std::uint32_t>(fine.vertices.size()));
-    if (is_new) fine.vertices.emplace_back(0.5 * (mesh.vertices[i] + mesh.vertices[j]));
-    return entry->second;
-  };
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const std::uint32_t ij = midpoint(i, j);
-    const std::uint32_t jk = midpoint(j, k);
-    const std::uint32_t ki = midpoint(k, i);
-    fine.triangles.push_back({i, ij, ki});
-    fine.triangles.push_back({ij, j, jk});
-    fine.triangles.push_back({ki, jk, k});
-    fine.triangles.push_back({ij, jk, ki});
-  }
-  for (const std::uint32_t face : mesh.face_of_triangle)
-    fine.face_of_triangle.insert(fine.face_of_triangle.end(), 4, face);
-  return fine;
-}
-
 }  // namespace verisim

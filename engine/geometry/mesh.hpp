@@ -55,7 +55,7 @@ struct MassProperties {
 [[nodiscard]] MassProperties mass_properties_of(const TriangleMesh& mesh);
 [[nodiscard]] double area_of(const TriangleMesh& mesh);
 
-/// What a mesh is, and what would have to be done to it before it bounds a solid.
+/// Defects of a mesh: what must be repaired before it bounds a solid.
 struct MeshReport {
   std::size_t degenerate_triangles = 0;  ///< repeated corners or zero area
   std::size_t duplicate_triangles = 0;
@@ -72,20 +72,16 @@ struct MeshReport {
   }
 };
 
-/// Welds equal vertices, drops degenerate and duplicate triangles, closes seams, orients components consistently and
-/// outward (nested shells alternately). T-joints are closed: where a corner lies on another triangle's open edge, to
-/// 1e-6 of the mesh's diagonal, that triangle is cut there; ends of open edges as near to each other as that become
-/// one. Nothing else of a surface that is open is touched, and no gap wider than that is filled. `mesh` is changed in
-/// place, face_of_triangle with it; every repair is one sentence in `notes`.
+/// Repairs a mesh in place, face_of_triangle with it. Welds equal vertices, drops degenerate and duplicate triangles,
+/// closes seams and T-joints, and orients components consistently and outward (nested shells alternately). T-joints:
+/// where a corner lies on another triangle's open edge, to 1e-6 of the mesh's diagonal, that triangle is cut there.
+/// Ends of open edges within the same distance become one. Wider gaps stay open. Every repair is one sentence in
+/// `notes`.
 /// @returns the report of the mesh as it is afterwards.
 /// @pre is_whole(mesh)
 MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes);
 
 /// The report alone. Self-intersections are looked for if `thorough` (n log n; CGAL). @pre is_whole(mesh)
 [[nodiscard]] MeshReport examine(const TriangleMesh& mesh, bool thorough);
-
-/// Every triangle in four at its edge midpoints; the shape is the same. Midpoints of shared edges are shared.
-/// @pre is_whole(mesh)
-[[nodiscard]] TriangleMesh subdivide(const TriangleMesh& mesh);
 
 }  // namespace verisim

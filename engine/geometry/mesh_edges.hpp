@@ -1,4 +1,4 @@
-// The edges of a triangle mesh, sorted: what orientation, repair and examination are all read from.
+// The edges of a triangle mesh, sorted. Orientation, repair and examination use them.
 #pragma once
 
 #include <cstdint>

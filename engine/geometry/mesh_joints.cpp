@@ -46,7 +46,7 @@ class Ends {
   std::vector<std::uint32_t> sorted_;
 };
 
-/// How far along from a to b [m] p lies; below zero if it is beside that line or not strictly between the two.
+/// Position of p along the line from a to b [m]; below zero if p is beside that line or not strictly between the two.
 double place_on_side(const Vector3d& a, const Vector3d& b, const Vector3d& p, double tolerance) {
   const double length = (b - a).norm();
   if (length <= 2 * tolerance) return -1;
@@ -56,7 +56,7 @@ double place_on_side(const Vector3d& a, const Vector3d& b, const Vector3d& p, do
   return between && (p - a - along * direction).norm() <= tolerance ? along : -1;
 }
 
-/// One triangle, turned so that its open side comes first, and what lies on that side in order from a to b.
+/// One triangle, rotated so that its open side comes first, and the ends that lie on that side in order from a to b.
 struct Cut {
   std::uint32_t a = 0, b = 0, apex = 0;
   std::vector<std::uint32_t> corners;

@@ -1,4 +1,4 @@
-// repair(): each step changes one thing and says so. The steps keep face_of_triangle in step with the triangles.
+// repair(): each step changes one thing and notes it. All steps keep face_of_triangle consistent with the triangles.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -22,7 +22,7 @@ std::string counted(std::size_t n, const char* what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
 
-/// Equal coordinates become one vertex, vertices without a triangle go. New numbers follow first use.
+/// Merges equal vertices and drops vertices without a triangle. New numbers follow first use.
 void weld(TriangleMesh& mesh) {
   std::vector<Vector3d> vertices;
   std::unordered_map<std::array<double, 3>, std::uint32_t, HashPoint> known;  // looked up only, never walked
@@ -61,7 +61,7 @@ std::size_t drop_repeated_corners(TriangleMesh& mesh) {
   return drop_triangles(mesh, drop);
 }
 
-/// Of triangles on the same three corners the first stays.
+/// Keeps the first of several triangles on the same three corners.
 std::size_t drop_duplicates(TriangleMesh& mesh) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> sorted;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -74,8 +74,8 @@ std::size_t drop_duplicates(TriangleMesh& mesh) {
   return drop_triangles(mesh, drop);
 }
 
-/// A flat triangle with three corners may be what joins its neighbours: dropped, it would open the mesh along its long
-/// side. So only those go that join nothing: an edge of theirs is open or has more than two triangles.
+/// Drops flat triangles that join no neighbours: an edge of theirs is open or has more than two triangles. Another flat
+/// triangle must stay, because without it the mesh would be open along its long side.
 std::size_t drop_flat_triangles(TriangleMesh& mesh) {
   std::vector<bool> flat(mesh.triangles.size());
   for (std::size_t t = 0; t < flat.size(); ++t) flat[t] = is_degenerate(mesh, mesh.triangles[t]);
@@ -94,7 +94,7 @@ void flip(TriangleMesh& mesh, std::size_t triangle) {
 
 struct Neighbour {
   std::uint32_t triangle;
-  bool same_way;  ///< both run the same way along the shared edge: one of them is the wrong way round
+  bool same_way;  ///< both run the same way along the common edge: one of them has the wrong orientation
 };
 
 std::vector<std::vector<Neighbour>> neighbours_of(const TriangleMesh& mesh) {
@@ -141,7 +141,7 @@ std::size_t orient_consistently(TriangleMesh& mesh) {
 
 /// One closed component: a shell around material or around a void.
 struct Shell {
-  TriangleMesh mesh;                     ///< its triangles alone, corners not shared
+  TriangleMesh mesh;                     ///< its triangles alone, each with its own corners
   std::vector<std::uint32_t> triangles;  ///< their numbers in the whole mesh
   Bounds bounds;
   double volume = 0;
@@ -179,8 +179,8 @@ double winding_number(const TriangleMesh& shell, const Vector3d& p) {
   return angle / (4 * pinned::kPi);
 }
 
-/// Does `outer` surround all of `inner`? Eight corners spread over `inner` are asked: shells that merely overlap have
-/// some outside and are not nested.
+/// True if `outer` surrounds `inner`, tested with eight corners spread over `inner`. Shells that overlap have some
+/// outside and are not nested.
 bool surrounds(const Shell& outer, const Shell& inner) {
   if ((outer.bounds.min.array() > inner.bounds.min.array()).any()) return false;
   if ((outer.bounds.max.array() < inner.bounds.max.array()).any()) return false;
@@ -224,15 +224,16 @@ void note_dropped(const Dropped& dropped, std::vector<std::string>& notes) {
   if (dropped.flat > 0) notes.push_back(counted(dropped.flat, "triangle") + " of zero area dropped");
 }
 
-/// Wide enough for coordinates in single precision on a part within ten of its diagonals of the origin, and far below
-/// any clearance that could be simulated.
+/// Wide enough for single precision on a part within ten diagonals of the origin, and far below any clearance that can
+/// be simulated.
 constexpr double kJointTolerance = 1e-6;  // of the mesh's diagonal
 
-/// A side is cut once, a triangle once for each of its sides; the rest is for what the tolerance brings in later.
+/// A side is cut once, a triangle once for each of its sides; further rounds are for corners that come within the
+/// tolerance later.
 constexpr unsigned kMaxRounds = 16;
 
-/// Closes seams until nothing changes. What the closing makes useless is dropped without a word of its own: it is part
-/// of the closing.
+/// Closes seams until nothing changes. Triangles and vertices that become useless are dropped without a note of their
+/// own.
 void close_joints(TriangleMesh& mesh, std::vector<std::string>& notes) {
   std::vector<Side> open = open_sides(mesh);
   const std::size_t before = open.size();
@@ -242,7 +243,7 @@ void close_joints(TriangleMesh& mesh, std::vector<std::string>& notes) {
   Dropped dropped;
   for (unsigned round = 0; round < kMaxRounds && !open.empty(); ++round) {
     const std::size_t joined_now = join_near_corners(mesh, open, tolerance);
-    // Joined corners have other numbers: the sides are to be found again before anything is cut.
+    // Joined corners have new numbers: sides must be found again before cutting.
     const std::size_t cut_now = joined_now > 0 ? 0 : cut_at_joints(mesh, open, tolerance);
     if (joined_now + cut_now == 0) break;
     joined += joined_now;
@@ -271,7 +272,7 @@ MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes) {
   const std::size_t turned = orient_consistently(mesh);
   if (turned > 0) notes.push_back(counted(turned, "triangle") + " turned to run like their neighbours");
   report = examine(mesh, false);
-  // Which side is out can be told only of a closed surface.
+  // Only a closed surface has an outside.
   if (report.open_edges == 0 && report.nonmanifold_edges == 0 && report.misoriented_edges == 0) {
     const std::size_t shells = orient_outward(mesh);
     if (shells > 0) notes.push_back(counted(shells, "shell") + " turned inside out, so that the material is inside");

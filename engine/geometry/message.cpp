@@ -33,7 +33,6 @@ class Cursor {
     return n;
   }
   std::string text() { return std::string(take(number())); }
-  [[nodiscard]] bool at_end() const { return rest_.empty(); }
 
  private:
   std::string_view rest_;

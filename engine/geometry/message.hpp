@@ -1,5 +1,5 @@
-// What verisim and its CAD child process say to each other: named groups of tables as bytes, native byte order (both
-// ends run on one machine). A request is one group "request"; an answer is one group per part, named after it, or one
+// The messages between verisim and its CAD child process: named groups of tables as bytes, in native byte order (both
+// run on one machine). A request is one group "request"; an answer is one group per part, named after it, or one
 // group "error" (see cad/main.cpp).
 #pragma once
 

@@ -1,4 +1,4 @@
-// Which format a model file has: its extension says it, as everywhere.
+// The format of a model file, by its extension.
 #pragma once
 
 #include <string>

@@ -50,23 +50,23 @@ std::vector<Mate> mating_candidates(const std::vector<Part>& parts, double toler
   return mates;
 }
 
-std::vector<std::string> questions_about(const Part& part) {
+std::vector<std::string> warnings_about(const Part& part) {
   constexpr double kSuspiciouslyLarge = 100;    // m: larger than a ship's engine
   constexpr double kSuspiciouslySmall = 10e-6;  // m: smaller than a hair is wide
-  std::vector<std::string> questions;
-  if (part.mesh.triangles.empty()) return questions;
+  std::vector<std::string> warnings;
+  if (part.mesh.triangles.empty()) return warnings;
   const double longest = bounds_of(part.mesh).size().maxCoeff();
   if (longest > kSuspiciouslyLarge) {
-    questions.push_back(
+    warnings.push_back(
         fmt::format("'{}' is {:.4g} m wide; if its file is in millimetres, make its scale a thousandth (scale = 0.001 "
                     "where none is given)",
                     part.name, longest));
   }
   if (longest < kSuspiciouslySmall) {
-    questions.push_back(fmt::format("'{}' is {:.4g} m wide; if its file is in metres, make its scale a thousandfold",
-                                    part.name, longest));
+    warnings.push_back(fmt::format("'{}' is {:.4g} m wide; if its file is in metres, make its scale a thousandfold",
+                                   part.name, longest));
   }
-  return questions;
+  return warnings;
 }
 
 }  // namespace verisim

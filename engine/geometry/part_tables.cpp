@@ -5,86 +5,11 @@
 #include <type_traits>
 
 #include "engine/base/error.hpp"
+#include "engine/geometry/entity_row.hpp"
 #include "engine/geometry/part.hpp"
 
 namespace verisim {
 namespace {
-
-constexpr std::size_t kSurfaceColumns = 11;  // point 3, direction 3, x axis 3, two lengths or angles
-using Row = std::array<double, kSurfaceColumns>;
-
-void put(Row& row, std::size_t column, const Vector3d& v) {
-  std::copy_n(v.data(), 3, row.begin() + static_cast<long>(column));
-}
-Vector3d get(const Row& row, std::size_t column) {
-  return {row[column], row[column + 1], row[column + 2]};
-}
-
-Row make_row(const Vector3d& point, const Vector3d& direction, const Vector3d& x_axis, double first, double second) {
-  Row row{};
-  put(row, 0, point);
-  put(row, 3, direction);
-  put(row, 6, x_axis);
-  row[9] = first;
-  row[10] = second;
-  return row;
-}
-
-struct ToRow {
-  Row operator()(const Plane& s) const { return make_row(s.point, s.normal, s.x_axis, 0, 0); }
-  Row operator()(const Cylinder& s) const { return make_row(s.point, s.direction, s.x_axis, s.radius, 0); }
-  Row operator()(const Cone& s) const { return make_row(s.point, s.direction, s.x_axis, s.radius, s.half_angle); }
-  Row operator()(const Sphere& s) const { return make_row(s.center, s.direction, s.x_axis, s.radius, 0); }
-  Row operator()(const Torus& s) const {
-    return make_row(s.center, s.direction, s.x_axis, s.major_radius, s.minor_radius);
-  }
-  Row operator()(const OtherSurface&) const { return Row{}; }
-  Row operator()(const Line& c) const { return make_row(c.point, c.direction, Vector3d::Zero(), 0, 0); }
-  Row operator()(const Circle& c) const { return make_row(c.center, c.normal, c.x_axis, c.radius, 0); }
-  Row operator()(const Ellipse& c) const {
-    return make_row(c.center, c.normal, c.x_axis, c.major_radius, c.minor_radius);
-  }
-  Row operator()(const OtherCurve&) const { return Row{}; }
-};
-
-bool is_hole(const Surface& surface) {
-  return std::visit(
-      [](const auto& s) {
-        if constexpr (requires { s.hole; }) return s.hole;
-        return false;
-      },
-      surface);
-}
-
-Surface surface_from(std::uint8_t kind, const Row& r, bool hole) {
-  switch (kind) {
-    case 0:
-      return Plane{get(r, 0), get(r, 3), get(r, 6)};
-    case 1:
-      return Cylinder{get(r, 0), get(r, 3), get(r, 6), r[9], hole};
-    case 2:
-      return Cone{get(r, 0), get(r, 3), get(r, 6), r[9], r[10], hole};
-    case 3:
-      return Sphere{get(r, 0), get(r, 3), get(r, 6), r[9], hole};
-    case 4:
-      return Torus{get(r, 0), get(r, 3), get(r, 6), r[9], r[10], hole};
-    default:
-      return OtherSurface{};
-  }
-}
-
-Curve curve_from(std::uint8_t kind, const Row& r) {
-  switch (kind) {
-    case 0:
-      return Line{get(r, 0), get(r, 3)};
-    case 1:
-      return Circle{get(r, 0), get(r, 3), get(r, 6), r[9]};
-    case 2:
-      return Ellipse{get(r, 0), get(r, 3), get(r, 6), r[9], r[10]};
-    default:
-      return OtherCurve{};
-  }
-}
 
 /// Collects the tables of one part.
 class Writer {
@@ -117,7 +42,7 @@ void add_mesh(Writer& w, const TriangleMesh& mesh) {
 void add_faces(Writer& w, const std::vector<Face>& faces) {
   std::vector<std::uint8_t> kinds;
   std::vector<std::uint8_t> holes;
-  std::vector<Row> rows;
+  std::vector<EntityRow> rows;
   std::vector<std::array<double, 4>> bounds;
   std::vector<double> areas;
   std::vector<std::uint32_t> edges;
@@ -125,7 +50,7 @@ void add_faces(Writer& w, const std::vector<Face>& faces) {
   for (const Face& face : faces) {
     kinds.push_back(static_cast<std::uint8_t>(face.surface.index()));
     holes.push_back(is_hole(face.surface) ? 1 : 0);
-    rows.push_back(std::visit(ToRow{}, face.surface));
+    rows.push_back(row_of(face.surface));
     bounds.push_back({face.u_range[0], face.u_range[1], face.v_range[0], face.v_range[1]});
     areas.push_back(face.area);
     edges.insert(edges.end(), face.edges.begin(), face.edges.end());
@@ -144,7 +69,7 @@ void add_faces(Writer& w, const std::vector<Face>& faces) {
 
 void add_edges(Writer& w, const std::vector<Edge>& edges) {
   std::vector<std::uint8_t> kinds;
-  std::vector<Row> rows;
+  std::vector<EntityRow> rows;
   std::vector<std::array<double, 2>> bounds;
   std::vector<double> lengths;
   std::vector<Vector3d> points;
@@ -153,7 +78,7 @@ void add_edges(Writer& w, const std::vector<Edge>& edges) {
   std::vector<std::uint32_t> face_offsets = {0};
   for (const Edge& edge : edges) {
     kinds.push_back(static_cast<std::uint8_t>(edge.curve.index()));
-    rows.push_back(std::visit(ToRow{}, edge.curve));
+    rows.push_back(row_of(edge.curve));
     bounds.push_back(edge.t_range);
     lengths.push_back(edge.length);
     points.insert(points.end(), edge.polyline.begin(), edge.polyline.end());
@@ -228,6 +153,9 @@ class Reader {
       if (index >= limit) damaged(name, fmt::format("points at row {} of {}", index, limit));
     }
   }
+  void require_kind(const char* name, std::uint8_t kind, std::size_t kinds) const {
+    if (kind >= kinds) damaged(name, fmt::format("has kind {}, of {}", kind, kinds));
+  }
   [[noreturn]] void damaged(const char* name, const std::string& what) const {
     fail(ErrorKind::input, "part '{}': table '{}' {}; the file that holds it is damaged", part_, name, what);
   }
@@ -256,12 +184,13 @@ std::vector<Face> read_faces(const Reader& r, std::size_t edge_count) {
   const auto kinds = r.values<std::uint8_t>("face_kind");
   const std::size_t n = kinds.size();
   const auto holes = r.rows<std::uint8_t>("face_hole", n);
-  const auto rows = r.rows<double, Row>("face_surface", n);
+  const auto rows = r.rows<double, EntityRow>("face_surface", n);
   const auto bounds = r.rows<double, std::array<double, 4>>("face_bounds", n);
   const auto areas = r.rows<double>("face_area", n);
   const auto edges = r.lists<std::uint32_t>("face_edges", "face_edge_offsets", n);
   std::vector<Face> faces(n);
   for (std::size_t i = 0; i < n; ++i) {
+    r.require_kind("face_kind", kinds[i], kSurfaceNames.size());
     r.require_below("face_edges", edges[i], edge_count);
     faces[i].surface = surface_from(kinds[i], rows[i], holes[i] != 0);
     faces[i].u_range = {bounds[i][0], bounds[i][1]};
@@ -275,13 +204,14 @@ std::vector<Face> read_faces(const Reader& r, std::size_t edge_count) {
 std::vector<Edge> read_edges(const Reader& r, std::size_t face_count) {
   const auto kinds = r.values<std::uint8_t>("edge_kind");
   const std::size_t n = kinds.size();
-  const auto rows = r.rows<double, Row>("edge_curve", n);
+  const auto rows = r.rows<double, EntityRow>("edge_curve", n);
   const auto bounds = r.rows<double, std::array<double, 2>>("edge_bounds", n);
   const auto lengths = r.rows<double>("edge_length", n);
   const auto polylines = r.lists<double, Vector3d>("edge_points", "edge_point_offsets", n);
   const auto faces = r.lists<std::uint32_t>("edge_faces", "edge_face_offsets", n);
   std::vector<Edge> edges(n);
   for (std::size_t i = 0; i < n; ++i) {
+    r.require_kind("edge_kind", kinds[i], kCurveNames.size());
     r.require_below("edge_faces", faces[i], face_count);
     edges[i] = {curve_from(kinds[i], rows[i]), bounds[i], lengths[i], polylines[i], faces[i]};
   }
@@ -314,7 +244,7 @@ std::vector<NamedArray> to_tables(const Part& part) {
   w.add("color", std::vector<float>(part.color.begin(), part.color.end()), 0, "1", "Red, green, blue, opacity");
   const std::vector<std::uint8_t> flags = {std::uint8_t{part.watertight}, std::uint8_t{part.exact}};
   w.add("flags", flags, 0, "1", "Watertight; from exact geometry");
-  w.add("notes", bytes_of(part.notes), 0, "1", "What was repaired or questioned: UTF-8, one sentence a line");
+  w.add("notes", bytes_of(part.notes), 0, "1", "What was repaired or is doubtful: UTF-8, one sentence a line");
   return std::move(w.tables);
 }
 

@@ -14,7 +14,7 @@ namespace verisim {
 
 namespace {
 
-/// Of the mesh's extent: single precision, numbers of six digits, of five.
+/// Relative to the mesh's extent: rounding to single precision, to six digits, to five.
 constexpr std::array<double, 3> kUsualTolerances = {3e-7, 4e-6, 4.5e-5};
 
 double extent_of(const TriangleMesh& mesh) {
@@ -23,17 +23,17 @@ double extent_of(const TriangleMesh& mesh) {
   return farthest;
 }
 
-/// How much it takes to say what a mesh is: a word for each surface, and one for each triangle that is on none.
-std::size_t effort(const std::vector<recover::Region>& regions) {
-  std::size_t words = regions.size();
+/// Description length of a segmentation: one word per surface, and one per triangle on no surface.
+std::size_t description_length(const std::vector<recover::Region>& regions) {
+  std::size_t length = regions.size();
   for (const recover::Region& region : regions) {
-    if (std::holds_alternative<OtherSurface>(region.surface)) words += region.triangles.size();
+    if (std::holds_alternative<OtherSurface>(region.surface)) length += region.triangles.size();
   }
-  return words;
+  return length;
 }
 
-/// Do most of the triangles that are not on planes lie on round surfaces? Vertices of less precision would not.
-bool are_mostly_round(const recover::CanonicalMesh& mesh, const std::vector<recover::Region>& regions) {
+/// True if of the area that is not on planes most is on curved surfaces. With too small a tolerance it is not.
+bool are_mostly_curved(const recover::CanonicalMesh& mesh, const std::vector<recover::Region>& regions) {
   double round = 0, other = 0;
   for (const recover::Region& region : regions) {
     if (std::holds_alternative<Plane>(region.surface)) continue;
@@ -48,20 +48,21 @@ std::vector<recover::Region> find_regions(const recover::CanonicalMesh& mesh, do
   return recover::find_regions(mesh, tolerance, options.round_step_max, options.thresholds);
 }
 
-struct Explanation {
+struct Segmentation {
   std::vector<recover::Region> regions;
   double tolerance = 0;
 };
 
-/// The explanation by the smallest tolerance, unless a larger one halves the effort: too small a tolerance breaks
-/// surfaces into pieces, too large a one finds some where there are none. It is not even tried where the smaller one
-/// explains most of what is not flat: the rest is a free form.
-Explanation explained(const recover::CanonicalMesh& mesh, double extent, const RecoverOptions& options) {
-  Explanation best;
+/// Segmentation with the smallest tolerance, unless a larger one halves the description length. Too small a tolerance
+/// breaks surfaces into pieces; too large a one finds surfaces where there are none. A larger one is not tried if most
+/// of the area that is not flat is on surfaces: then the rest is a free form.
+Segmentation best_segmentation(const recover::CanonicalMesh& mesh, double extent, const RecoverOptions& options) {
+  Segmentation best;
   for (const double usual : kUsualTolerances) {
-    Explanation next{find_regions(mesh, usual * extent, options), usual * extent};
-    if (best.tolerance == 0 || 2 * effort(next.regions) < effort(best.regions)) best = std::move(next);
-    if (are_mostly_round(mesh, best.regions)) break;
+    Segmentation next{find_regions(mesh, usual * extent, options), usual * extent};
+    if (best.tolerance == 0 || 2 * description_length(next.regions) < description_length(best.regions))
+      best = std::move(next);
+    if (are_mostly_curved(mesh, best.regions)) break;
   }
   return best;
 }
@@ -88,8 +89,8 @@ void recover_brep(Part& part, const RecoverOptions& options) {
   if (part.mesh.triangles.empty()) return;
   const recover::CanonicalMesh mesh = recover::canonical(part.mesh);
   const double given = options.tolerance;
-  const auto [regions, tolerance] = given > 0 ? Explanation{find_regions(mesh, given, options), given}
-                                              : explained(mesh, extent_of(part.mesh), options);
+  const auto [regions, tolerance] = given > 0 ? Segmentation{find_regions(mesh, given, options), given}
+                                              : best_segmentation(mesh, extent_of(part.mesh), options);
   std::vector<std::uint32_t> face_of(mesh.triangles.size(), kNoFace);
   for (std::uint32_t r = 0; r < regions.size(); ++r) {
     part.faces.push_back(recover::face_of(mesh, regions[r]));

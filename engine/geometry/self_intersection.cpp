@@ -23,11 +23,11 @@ class Crossings {
  public:
   explicit Crossings(const TriangleMesh& mesh) : mesh_(mesh), shallow_(bounds_of(mesh).size().norm() / 2000) {}
 
-  /// Do triangles s and t meet elsewhere than along the corners and edges that they share, one of them reaching through
-  /// the other's plane by more than tessellations are exact?
+  /// True if triangles s and t meet elsewhere than at common corners and edges, and one reaches through the other's
+  /// plane by more than the accuracy of tessellations.
   [[nodiscard]] bool cross(const Triangle& s, const Triangle& t) const {
     if (reach(s, t) <= std::min(shallow_, 0.05 * std::max(longest_side(s), longest_side(t)))) return false;
-    // Corners that both have come first, in both in the same order: then the cases differ by their number alone.
+    // Common corners first, in the same order in both: then the cases differ by their number only.
     Triangle a = s;
     Triangle b = t;
     unsigned shared = 0;
@@ -47,7 +47,7 @@ class Crossings {
   }
 
  private:
-  /// How far one triangle reaches to both sides of the other's plane. Zero for two in one plane.
+  /// How far one triangle reaches through the other's plane. Zero if both lie in one plane.
   [[nodiscard]] double reach(const Triangle& s, const Triangle& t) const {
     return std::max(reach_through(s, t), reach_through(t, s));
   }
@@ -74,7 +74,7 @@ class Crossings {
   [[nodiscard]] Kernel::Triangle_3 triangle(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
 
   const TriangleMesh& mesh_;
-  double shallow_;  // m, as deep as the default tessellation of a CAD part is exact
+  double shallow_;  // m, the accuracy of a CAD part's default tessellation
 };
 
 std::vector<Box> boxes_of(const TriangleMesh& mesh) {

@@ -12,8 +12,8 @@ struct SelfIntersections {
 
 /// Any mesh, closed and manifold or not. A pair counts if one triangle reaches through the other's plane by more than
 /// 1/2000 of the mesh's diagonal or a twentieth of the longer triangle, whichever is less. So pairs in one plane never
-/// count, nor do slivers that rounding or tessellation pushed over a rim: two of the recorded models have hundreds, and
-/// no volume worth the name changes by them. Degenerate triangles are left out: they have no plane. n log n: 30,000
+/// count, nor do slivers that rounding or tessellation pushed over a rim. Two of the recorded models have hundreds of
+/// those; they hardly change the volume. Degenerate triangles are left out: they have no plane. n log n: 30,000
 /// triangles take about 0.1 s.
 /// @pre is_whole(mesh), all vertices finite
 [[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh);

@@ -8,7 +8,7 @@
 namespace verisim {
 namespace {
 
-/// What each kind is called, how many children it has and what its sizes mean.
+/// Name, number of children and meaning of the sizes of each kind.
 struct KindInfo {
   const char* name;
   std::size_t children;
@@ -30,7 +30,7 @@ const KindInfo& info_of(Solid::Kind kind) {
   return infos[static_cast<std::size_t>(kind)];
 }
 
-/// More than any scene written by hand has; children can be shared, so a short script could describe 2^1000 of them.
+/// More than any scene written by hand has. Children can be reused, so a short script could describe 2^1000 of them.
 constexpr std::size_t kNodesMax = 10000;
 
 void check_sizes(const Solid& solid) {
@@ -83,7 +83,7 @@ void check_node(const Solid& solid, std::size_t& nodes) {
   }
 }
 
-/// q and -q turn alike: the one whose last coefficient that is not zero is positive stands for both.
+/// q and -q are the same rotation. Chosen is the one whose last nonzero coefficient is positive.
 Eigen::Vector4d canonical(const Quaterniond& q) {
   for (const double coefficient : {q.w(), q.z(), q.y(), q.x()}) {
     if (coefficient != 0) return coefficient < 0 ? Eigen::Vector4d(-q.coeffs()) : Eigen::Vector4d(q.coeffs());

@@ -9,7 +9,7 @@
 namespace verisim {
 namespace {
 
-/// How a foreign file is cut into fields.
+/// The layout of a foreign file.
 struct Layout {
   char separator = ',';            ///< ' ': any number of blanks and tabs
   std::vector<std::string> names;  ///< empty: the file has no column names

@@ -131,7 +131,7 @@ bool MarkedFile::is_at(const std::string& path) const {
          mine.st_ino == named.st_ino;
 }
 
-void MarkedFile::share() const {
+void MarkedFile::allow_readers() const {
   struct flock lock = whole_file(F_RDLCK);
   static_cast<void>(::fcntl(descriptor_, F_OFD_SETLK, &lock));
 }

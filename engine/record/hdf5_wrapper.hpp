@@ -1,7 +1,7 @@
-// What this folder needs of HDF5's C API: handles that close themselves, one lock, errors as exceptions, attributes.
+// A wrapper of HDF5's C API: handles that close themselves, one lock, errors as exceptions, attributes.
 //
-// HDF5 keeps global state and is not safe for threads in every build: whoever calls it holds an Hdf5Session. Nothing of
-// HDF5's own error printing reaches the terminal. Functions throw Hdf5Failure, whose text is the cause (“No space left
+// HDF5 keeps global state and is not thread-safe in every build: every caller holds an Hdf5Session. HDF5's own error
+// printing is off. Functions throw Hdf5Failure, whose text is the cause (“No space left
 // on device”) where HDF5 knows it; callers turn it into Error(input) or Error(io) with the file's name.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace verisim::hdf5 {
 
-/// Holds the right to call HDF5 from this thread. Not recursive: taken by public functions, never by helpers.
+/// The lock for calls of HDF5 from this thread. Not recursive: public functions take it, helpers never do.
 class Session {
  public:
   Session();
@@ -60,7 +60,7 @@ class Handle {
     if (id_ >= 0) closer_(id_);
     id_ = -1;
   }
-  /// Gives the identifier away without closing it.
+  /// Releases the identifier without closing it.
   hid_t release() { return std::exchange(id_, -1); }
 
  private:

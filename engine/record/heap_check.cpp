@@ -48,7 +48,7 @@ T number_at(std::string_view bytes, std::size_t at) {
 // HDF5 File Format Specification, III.E, version 1: signature, version, 3 reserved bytes, size of the collection; then
 // objects: index (2 bytes), reference count (2), reserved (4), size (8), content padded to 8. Index 0 is the free rest,
 // whose size counts its own header.
-constexpr std::string_view kSignature("GCOL\1\0\0\0", 8);
+constexpr std::string_view kHeapSignature("GCOL\1\0\0\0", 8);
 constexpr std::size_t kHeader = 16;
 
 bool is_whole(std::string_view collection) {
@@ -72,7 +72,8 @@ void check_text_heaps(const std::string& path) {
 }
 
 void check_text_heaps_of(std::string_view bytes) {
-  for (std::size_t at = bytes.find(kSignature); at != std::string_view::npos; at = bytes.find(kSignature, at + 1)) {
+  for (std::size_t at = bytes.find(kHeapSignature); at != std::string_view::npos;
+       at = bytes.find(kHeapSignature, at + 1)) {
     if (bytes.size() - at < kHeader) throw hdf5::Failure("a heap of texts is cut off");
     const auto size = number_at<std::uint64_t>(bytes, at + 8);
     if (size > bytes.size() - at || !is_whole(bytes.substr(at, size)))

@@ -1,6 +1,5 @@
-// HDF5 keeps strings of their own length (h5py's str) in "global heaps", the one structure of its current format
-// without a checksum, and believes the lengths that it finds there. A flipped bit in one would crash the reader: looked
-// at first.
+// A check of HDF5's "global heaps", which hold strings of variable length (h5py's str). They are the one structure of
+// its current format without a checksum, and HDF5 trusts the lengths in them. A flipped bit would crash the reader.
 #pragma once
 
 #include <string>
@@ -8,7 +7,7 @@
 
 namespace verisim {
 
-/// Throws hdf5::Failure if a global heap of the file contradicts itself. Reads the whole file once (about 5 GB/s).
+/// Throws hdf5::Failure if a global heap of the file is inconsistent. Reads the whole file once (about 5 GB/s).
 void check_text_heaps(const std::string& path);
 /// The same of a file in memory.
 void check_text_heaps_of(std::string_view bytes);

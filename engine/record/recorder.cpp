@@ -37,8 +37,8 @@ std::size_t ring_rows(const RecorderOptions& options) {
 
 }  // namespace
 
-// One producer (the loop) and one consumer (the writer thread) share a ring of rows and one of events. Each counter is
-// written by one side only and grows for ever; place = counter mod size.
+// A ring of rows and one of events between one producer (the loop) and one consumer (the writer thread). Each counter
+// is written by one side only and never decreases; index = counter mod size.
 //
 //   safe_rows_ <= rows_ <= safe_rows_ + ring     written by the writer / by the loop
 //
@@ -212,7 +212,7 @@ struct Recorder::Implementation {
     return options_.paced || waiting >= batch_ || (safe == 0 && waiting > 0) || events >= kEventRing / 2;
   }
 
-  // Writes what waits (at most kRowsAtOnce rows) and makes it safe. False if nothing waited.
+  // Writes and flushes the waiting rows, at most kRowsAtOnce. False if there were none.
   bool write_waiting() {
     const std::uint64_t rows_from = safe_rows_.load(std::memory_order_relaxed);
     const std::uint64_t rows_to = std::min(rows_.load(std::memory_order_acquire), rows_from + kRowsAtOnce);

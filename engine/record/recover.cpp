@@ -22,7 +22,7 @@ using hdf5::Handle;
 
 // HDF5 File Format Specification, II.A, version 3: signature (8 bytes), version, size of offsets, size of lengths,
 // consistency flags, base address, extension address, end of file address (8 bytes each), …
-constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+constexpr std::array<char, 8> kFileSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
 constexpr std::size_t kVersionAt = 8, kFlagsAt = 11, kEndAt = 28, kSuperblockBytes = 48;
 
 // A kill may come between the system's enlarging of the file and HDF5's note of it, or the other way round.
@@ -73,7 +73,7 @@ Superblock read_superblock(const std::string& path) {
   if (!in) fail(ErrorKind::input, "{}: cannot be read ({}); check its permissions", path, system_cause());
   in.read(bytes.data(), bytes.size());
   if (in.gcount() == 0) fail(ErrorKind::input, "{}: is empty; run the scenario again", path);
-  if (!std::equal(kSignature.begin(), kSignature.end(), bytes.begin())) {
+  if (!std::equal(kFileSignature.begin(), kFileSignature.end(), bytes.begin())) {
     fail(ErrorKind::input, "{}: is not an HDF5 file; name a file that 'verisim run' wrote", path);
   }
   if (in.gcount() < static_cast<std::streamsize>(bytes.size())) {

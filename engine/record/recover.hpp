@@ -1,4 +1,4 @@
-// What the first bytes of an HDF5 file say of the process that wrote it.
+// The superblock of an HDF5 file: its state when the writing process ended.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 namespace verisim {
 
 struct Superblock {
-  bool left_open = false;         ///< by a writer that did not come to its end
-  std::uint64_t end_address = 0;  ///< bytes that the file says it has
+  bool left_open = false;         ///< by a writer that did not close it
+  std::uint64_t end_address = 0;  ///< length of the file in bytes, as it records it
 };
 
 /// Throws Error(input): not there, empty, not HDF5, older than SWMR.

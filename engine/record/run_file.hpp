@@ -1,11 +1,10 @@
-// Run files (HDF5): what a run was, did and cost. The layout is INTERFACES section 2; the columns come from a Schema
-// that the simulation fills, so that what is stored, hashed and documented is one table.
+// Run files (HDF5): inputs, states and costs of a run. The layout is INTERFACES section 2. The columns come from a
+// Schema that the simulation fills: one table for what is stored, hashed and documented.
 //
 // Writing. The simulation thread fills rows of a ring; one writer thread appends them (SWMR, H5Fflush). The loop never
 // allocates, locks or writes. A process killed at any moment leaves a file that h5py opens with swmr=True and that
-// recover() closes; at most the last 100 ms of simulated frames are missing. Before the first frame is safe on disk no
-// file of that name exists (it is written beside it as ".part" and renamed); a former file of that name stays until
-// then.
+// recover() closes; at most the last 100 ms of simulated frames are missing. The file is
+// written as ".part" and renamed once its first frame is safe on disk; a former file of that name stays until then.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +16,12 @@
 #include <variant>
 #include <vector>
 
-#include "engine/base/named_array.hpp"
+#include "engine/base/columns.hpp"
 
 namespace verisim {
 
-/// One dataset that grows with the frames.
-struct Column {
-  std::string path;  ///< "/state/body/pin/pose"
-  Dtype dtype = Dtype::f64;
-  std::size_t width = 1;  ///< 1: dataset of shape [N]; else [N, width]
-  std::string units;
-  std::string description;
-  std::size_t offset = 0;  ///< bytes from the start of the row; set by Schema::add
-  /// u8 of width 1: value i means enum_names[i] (an HDF5 enum). Otherwise names of the components (stages of /timing).
-  std::vector<std::string> enum_names;
-  /// Empty: every frame adds a row. Else the path of a u32 column of the same schema: only frames where that is not 0
-  /// add a row to this one (what runs at a rate of its own).
-  std::string due = {};
-  [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
-};
-
 /// The columns of a run, packed without padding in the order of adding; /state columns first, so that the state of a
-/// row is one run of bytes.
+/// row is contiguous.
 class Schema {
  public:
   /// Returns the column's index. Throws Error(input) if the path exists already (two bodies of one name).
@@ -71,7 +54,7 @@ struct StoredModel {
   std::vector<std::pair<std::string, std::vector<NamedArray>>> parts;  ///< part name, its tables
 };
 
-/// Everything that is known before the first frame.
+/// Data that are known before the first frame.
 struct RunHeader {
   std::map<std::string, Attribute> attributes;  ///< of "/": scenario, parameters (JSON), seed, dt, version …
   std::vector<InputFile> files;                 ///< /inputs/files/NAME
@@ -85,9 +68,10 @@ struct Event {
 };
 
 struct RecorderOptions {
-  bool paced = false;                  ///< never wait for the file: a full ring is Error(io)
-  std::size_t frames_unflushed = 100;  ///< free-running: a kill costs at most so many frames; the loop waits for that
-  std::size_t ring_rows = 0;           ///< 0: chosen (256 free-running; 8 s of frames paced)
+  bool paced = false;  ///< never wait for the file: a full ring is Error(io)
+  std::size_t frames_unflushed =
+      100;                    ///< free-running: a kill loses at most so many frames; the loop waits for the file
+  std::size_t ring_rows = 0;  ///< 0: chosen (256 free-running; 8 s of frames paced)
 };
 
 /// Writes one run. Not copyable. All functions are for the one simulation thread.

@@ -140,7 +140,7 @@ RunWriter::RunWriter(const std::string& path, const Schema& schema, const RunHea
     create(header);
     start_swmr();
     room_ = std::make_unique<Reservation>(part_.path());
-    mark_->share();
+    mark_->allow_readers();
   });
 }
 

@@ -1,10 +1,10 @@
-// The HDF5 side of a recording: creates the file of a run, appends rows and events, makes them safe, closes it.
-// For one thread at a time; knows no ring and no clock. All functions throw Error(io).
+// The HDF5 side of a recording: creates the file of a run, appends rows and events, flushes them, closes the file. For
+// one thread at a time; knows no ring and no clock. All functions throw Error(io).
 //
-// Layout beyond INTERFACES section 2: "/" says how many `columns` there are and each carries `order` (its
-// place in the schema), where its values or components have names, `names`, and where not every frame adds a row,
-// `rows_where`, the column that is not 0 in the frames that do; /inputs/files/N and
-// /inputs/models/I/J number files, models and parts, whose names are attributes (names may be equal or hold '/').
+// Layout beyond INTERFACES section 2. Attributes of "/": `columns`, their number. Attributes of a column: `order`, its
+// index in the schema; `names` of values or components; `rows_where` if not every frame adds a row, the path of the
+// column that is not 0 in the frames that do. /inputs/files/N and /inputs/models/I/J are numbered; the names of files,
+// models and parts are attributes, because they may be equal or contain '/'.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,7 @@ namespace verisim {
 inline constexpr const char* kRunFormat = "verisim-run";
 inline constexpr std::int64_t kRunFormatVersion = 1;
 
-/// An event as it lies in the ring and in the file: fixed lengths, because SWMR cannot append strings of their own
-/// length.
+/// An event in the ring and in the file. Its strings have fixed lengths, because SWMR cannot append others.
 struct StoredEvent {
   double time = 0;
   char kind[32] = {};
@@ -38,17 +37,16 @@ class RunWriter {
  public:
   /// Creates PATH.part with header, inputs and empty columns, and starts SWMR.
   RunWriter(const std::string& path, const Schema& schema, const RunHeader& header);
-  /// Not closed: what was flushed stays as a kill would leave it; a file without a row is removed.
+  /// Without close(): flushed data stay, as after a kill; a file without a row is removed.
   ~RunWriter();
 
-  /// Makes sure that so much can be appended and flushed. Called before, its Error leaves a file that is whole.
+  /// Ensures disk space for an append and a flush. An Error from here leaves a consistent file.
   void reserve(std::size_t rows, std::size_t events);
   /// Appends `count` rows that lie one after the other. About 4 us a column and 10 ns a value.
   /// @pre rows (or events) are there, if there are any
   void append(const std::byte* rows, std::size_t count);
   void append(const StoredEvent* events, std::size_t count);
-  /// Hands all that was appended to the system, in an order that survives a kill. From the first time with a row on,
-  /// the file has its own name.
+  /// Flushes all appended data in an order that survives a kill. The first flush with a row gives the file its name.
   void flush();
   /// Ends SWMR, adds the attributes of /summary and "/" to a copy, and puts that in the file's place.
   void close(const std::map<std::string, Attribute>& summary, const std::map<std::string, Attribute>& root);

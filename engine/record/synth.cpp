@@ -24,6 +24,13 @@ struct Sample {
 
 using Motion = std::function<Sample(double t)>;
 
+struct SynthParameter {
+  std::string name;
+  double value = 0;  ///< default
+  std::string units;
+  std::string description;
+};
+
 struct Synthesizer {
   std::string kind;
   std::string description;
@@ -233,15 +240,12 @@ std::vector<std::string> synthesizers() {
   return kinds;
 }
 
-std::vector<SynthParameter> synth_parameters(const std::string& kind) {
-  return find(kind).parameters;
-}
-
 std::string synthesizer_help() {
   std::string help;
   for (const Synthesizer& s : table()) {
     help += (help.empty() ? "" : "\n") + s.kind + ", " + s.description + ":";
-    for (const SynthParameter& p : s.parameters) help += fmt::format(" {}={:g}", p.name, p.value);
+    for (const SynthParameter& p : s.parameters)
+      help += fmt::format("\n  {}={:g} {}: {}", p.name, p.value, p.units, p.description);
   }
   return help;
 }

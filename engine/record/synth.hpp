@@ -1,6 +1,5 @@
-// Synthesized haptic traces: motions whose every sample is a formula of time, for scenes that no hand was recorded for
-// and for tests that need to know the answer. Pinned functions and named random streams: same parameters and seed, same
-// bits, everywhere.
+// Synthesized haptic traces: every sample is a formula of time. For scenes without a recorded hand, and for tests that
+// need a known answer. Pinned functions and named random streams: equal parameters and seed give equal bits everywhere.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +11,11 @@
 
 namespace verisim {
 
-/// A parameter of a synthesizer. Units are SI.
-struct SynthParameter {
-  std::string name;
-  double value = 0;  ///< default
-  std::string units;
-  std::string description;
-};
-
 /// Names of all kinds: "sine" (sum of two sines per axis), "reach" (minimum jerk, point to point and back), "tremor"
 /// (physiological tremor around a point), "insertion" (down and up along an axis, again and again), "step" (a jump).
 [[nodiscard]] std::vector<std::string> synthesizers();
 
-/// The parameters of a kind with their defaults. Error(usage), with the nearest name, for an unknown kind.
-[[nodiscard]] std::vector<SynthParameter> synth_parameters(const std::string& kind);
-
-/// All kinds with their parameters, one line each, for --help.
+/// All kinds, and below each its parameters, one line each: name, default, unit, meaning. For --help.
 [[nodiscard]] std::string synthesizer_help();
 
 /// A haptic trace of that kind. Its `source` says kind, parameters and seed, so that it can be made again.

@@ -1,5 +1,5 @@
-// What makes a table a trace: the columns of each kind, and what the numbers must obey. Shared by both file formats,
-// by conversion and by synthesis.
+// The form of a trace: the columns of each kind and the conditions on the numbers. Used by both file formats, by
+// conversion and by synthesis.
 #pragma once
 
 #include <functional>

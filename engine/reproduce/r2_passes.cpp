@@ -20,7 +20,8 @@ struct Batch {
   std::vector<double> rates;  ///< passes per second, seed by seed
 };
 
-/// The trial once per seed, all in one run file (the last seed's stays) and one table that tells how to get each again.
+/// The trial once per seed. All write to one run file, of which the last seed's remains, and a table tells how to
+/// repeat each.
 Batch run_batch(const Workshop& workshop, const Fit& fit, const char* hybrid, std::uint64_t seeds, double duration) {
   const std::string name =
       fmt::format("r2_{}_clearance_{:g}mm_voxel_{:g}mm", hybrid, 1e3 * fit.clearance, 1e3 * fit.voxel_size);
@@ -34,7 +35,7 @@ Batch run_batch(const Workshop& workshop, const Fit& fit, const char* hybrid, st
                      .duration = duration};
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     request.seed = seed;
-    const RunFigures run = workshop.run(request);
+    const TimedRun run = workshop.run(request);
     const double passes = run.measure("passes");
     batch.rates.push_back(passes / run.simulated_s);
     csv += fmt::format("{},{},{},{},{},{}\n", seed, passes, run.simulated_s, run.collision_frames, run.force_max,

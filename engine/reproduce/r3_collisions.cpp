@@ -1,4 +1,4 @@
-// R3: collisions of voxels in one run, and how many of them had to be recognized anew (section 6.5).
+// R3: collisions of voxels in one run, and how many of them needed recognition (section 6.5).
 #include <fmt/format.h>
 
 #include "engine/reproduce/reproductions.hpp"
@@ -7,7 +7,7 @@ namespace verisim::reproduce {
 
 std::vector<Row> r3_collisions(const Workshop& workshop) {
   const std::string file = workshop.file("r3_collisions.h5");
-  const RunFigures run =
+  const TimedRun run =
       workshop.run({.scenario = "peg_in_hole", .file = file, .sets = {{"hybrid", "restore"}}, .duration = 110});
   const auto number = [](std::uint64_t n) { return static_cast<double>(n); };
   const std::uint64_t found = run.cache_misses - run.null_misses;

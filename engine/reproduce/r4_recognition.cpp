@@ -1,4 +1,4 @@
-// R4: table 7.1 and figure 7.2: time to recognize a pair of entities against how many recognizers are compiled in.
+// R4: table 7.1 and figure 7.2: time to recognize a pair of entities against the number of recognizers compiled in.
 //
 // The dissertation timed 20 of the 64 choices of its six recognizers on a 2.4 GHz Core 2 Duo; here all 64 are timed in
 // turns, on this machine (constraint/recognition_table.hpp). Absolute times compare two computers and two compilers;

@@ -1,12 +1,12 @@
-// R5: what the approach before the dissertation's cost: a force blended from a constraint solver's (the loop fell below
-// 500 Hz, often to 100 Hz, while the pin went in), and finding which entities pass through which voxels (minutes).
+// R5: costs of the approach before the dissertation's: a blended force from a constraint solver (the loop fell below
+// 500 Hz, often to 100 Hz, while the pin went in), and the association of voxels with entities (minutes).
 //
 // Both exist here as well: hybrid = "blend" with a solver written for the purpose, and the association of every surface
-// voxel. The comparison tells how much of the published cost was the idea's and how much its CAD kernel's.
+// voxel. The comparison separates the cost of the method from that of its CAD kernel.
 #include <algorithm>
 #include <chrono>
 
-#include "engine/base/error.hpp"
+#include "engine/base/quantile.hpp"
 #include "engine/geometry/loader.hpp"
 #include "engine/geometry/write_file.hpp"
 #include "engine/reproduce/reproductions.hpp"
@@ -18,15 +18,7 @@ namespace {
 
 constexpr double kNsPerSecond = 1e9;
 
-/// The p-quantile, nearest rank.
-double quantile_ns(std::vector<std::uint32_t> times, double p) {
-  VERISIM_ASSERT(!times.empty());
-  const auto rank = static_cast<std::ptrdiff_t>(p * static_cast<double>(times.size() - 1));
-  std::nth_element(times.begin(), times.begin() + rank, times.end());
-  return times[static_cast<std::size_t>(rank)];
-}
-
-RunFigures insert_pin(const Workshop& workshop, const std::string& hybrid) {
+TimedRun insert_pin(const Workshop& workshop, const std::string& hybrid) {
   return workshop.run({.scenario = "peg_in_hole",
                        .file = workshop.file("r5_" + hybrid + ".h5"),
                        .sets = {{"hybrid", hybrid}},
@@ -95,13 +87,14 @@ Row association_row(const Workshop& workshop) {
 }  // namespace
 
 std::vector<Row> r5_blending(const Workshop& workshop) {
-  const RunFigures blend = insert_pin(workshop, "blend");
-  const RunFigures restore = insert_pin(workshop, "restore");
+  TimedRun blend = insert_pin(workshop, "blend");
+  TimedRun restore = insert_pin(workshop, "restore");
   const std::vector<std::string> runs = {blend.run_file, restore.run_file};
-  const double slow = quantile_ns(blend.collision_frame_ns, 0.99);
-  const auto late = std::count_if(blend.collision_frame_ns.begin(), blend.collision_frame_ns.end(),
+  const double slow = quantile(blend.collision_frame_times_ns, 0.99);
+  const auto late = std::count_if(blend.collision_frame_times_ns.begin(), blend.collision_frame_times_ns.end(),
                                   [](std::uint32_t ns) { return ns > kNsPerSecond / 500; });
-  const double cost = quantile_ns(blend.collision_frame_ns, 0.5) / quantile_ns(restore.collision_frame_ns, 0.5);
+  const double median = quantile(blend.collision_frame_times_ns, 0.5);
+  const double cost = median / quantile(restore.collision_frame_times_ns, 0.5);
   return {
       {"R5",
        "rate during insertion with force blending",

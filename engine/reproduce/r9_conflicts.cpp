@@ -12,10 +12,10 @@
 namespace verisim::reproduce {
 namespace {
 
-/// Of /state/energy: what has left the parts for good lies side by side (dampers, contact, the discretization).
+/// Adjacent values of /state/energy: energy that has left the parts for good (dampers, contact, the discretization).
 constexpr std::size_t kTerms = 8, kFirstLoss = 3, kLosses = 3;
 
-/// The least that had been lost at any frame since the start [J]; below zero, energy has come from nowhere.
+/// The least energy lost since the start, over all frames [J]. Below zero, energy was generated.
 double least_lost(const std::string& path) {
   const RunFile run(path);
   double least = 0;
@@ -45,7 +45,7 @@ std::vector<Row> try_out(const Workshop& workshop, const Conflict& conflict, con
   std::uint64_t assembled = 0;
   double least = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const RunFigures run = workshop.run(
+    const TimedRun run = workshop.run(
         {.scenario = "pins", .file = run_file, .sets = {{"hybrid", hybrid}, {"kind", conflict.kind}}, .seed = seed});
     const double energy = least_lost(run_file);
     assembled += run.outcome == "assembled" ? 1 : 0;

@@ -1,4 +1,4 @@
-// Every result of the dissertation that this program measures again (ORACLES section 1), in one list.
+// The list of the dissertation's results that this program measures again (ORACLES section 1).
 #pragma once
 
 #include <span>

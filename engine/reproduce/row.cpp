@@ -11,10 +11,4 @@ std::optional<double> ratio(const Row& row) {
   return *here / *published;
 }
 
-double RunFigures::measure(const std::string& name) const {
-  for (const auto& [key, value] : measures)
-    if (key == name) return value;
-  fail(ErrorKind::input, "{}: the scenario measured no '{}'; run it by itself to see what it measures", run_file, name);
-}
-
 }  // namespace verisim::reproduce

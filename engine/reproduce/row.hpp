@@ -1,4 +1,4 @@
-// One figure that the dissertation reports, beside the same figure measured here, and what a measurement may use.
+// One figure that the dissertation reports beside the same figure measured here, and the means of a measurement.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "engine/base/run_figures.hpp"
 
 namespace verisim::reproduce {
 
@@ -22,8 +24,8 @@ struct Row {
   Figure published;
   Figure here;
   std::optional<std::pair<double, double>> interval;  ///< 95 % confidence interval of `here`
-  std::string why;                                    ///< why `here` is what it is, where it differs from `published`
-  std::vector<std::string> runs;                      ///< files made by this very measurement that `here` comes from
+  std::string why;                                    ///< reason if `here` differs from `published`
+  std::vector<std::string> runs;                      ///< run files of this measurement from which `here` was computed
 };
 
 /// here / published; none unless both are numbers and published is not 0.
@@ -37,32 +39,20 @@ struct RunRequest {
   std::optional<double> duration{};                         ///< s
   std::optional<std::uint64_t> seed{};
   bool paced = false;             ///< by the wall clock
-  std::uint64_t empty_block = 0;  ///< paced: after every so many frames as many of a loop that does nothing
+  std::uint64_t empty_block = 0;  ///< paced: length of the empty blocks between blocks of frames; see LoopOptions
 };
-/// What came of it.
-struct RunFigures {
-  std::string run_file, outcome;
-  std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
-  std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
-  double simulated_s = 0, wall_s = 0;
-  bool realtime_priority = false;                 ///< paced: the system granted it
-  std::vector<std::uint32_t> frame_ns;            ///< of every frame
-  std::vector<std::uint32_t> collision_frame_ns;  ///< of the frames with contact
-  std::vector<std::pair<std::string, double>> measures;
-  std::vector<std::uint32_t> block_overruns, empty_block_overruns;  ///< of each block, and of the empty one behind it
-  double force_max = 0;                                             ///< N
-  double penetration_max = 0;                                       ///< m
-  std::string state_hash;
-
-  /// A scenario's measure by name. Error(input) naming it if the run has none.
-  [[nodiscard]] double measure(const std::string& name) const;
+/// What came of it: the figures of every run, and the times and overruns that they were made of.
+struct TimedRun : RunFigures {
+  std::vector<std::uint32_t> frame_times_ns;                        ///< of every frame
+  std::vector<std::uint32_t> collision_frame_times_ns;              ///< of the frames with contact
+  std::vector<std::uint32_t> block_overruns, empty_block_overruns;  ///< of each block, and of the empty one after it
 };
 
-/// What a measurement is given.
+/// The means of a measurement.
 struct Workshop {
   bool quick = false;  ///< all results together in under 45 s on two cores
   std::string folder;  ///< exists; every file of a measurement goes here
-  std::function<RunFigures(const RunRequest&)> run;
+  std::function<TimedRun(const RunRequest&)> run;
 
   /// The path of a file in `folder`.
   [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }

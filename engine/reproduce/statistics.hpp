@@ -1,4 +1,4 @@
-// Means of few samples and how sure they are. Sums run in the order of the samples.
+// Means of few samples with confidence intervals. Sums are taken in the order of the samples.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ struct Estimate {
 /// Mean of at least two samples. Assertion otherwise.
 [[nodiscard]] Estimate mean_of(std::span<const double> samples);
 
-/// sum(a) / sum(b) of at least two pairs that belong together, with the interval of the linearized ratio. Not a number
-/// if sum(b) is 0.
+/// Ratio estimate sum(a) / sum(b) of at least two pairs of samples, with the interval of the linearized ratio. Not a
+/// number if sum(b) is 0.
 [[nodiscard]] Estimate ratio_of(std::span<const double> a, std::span<const double> b);
 
 }  // namespace verisim::reproduce

@@ -1,5 +1,5 @@
-// The tree that a script builds below addObject: models, solids, and placements of them; and how it becomes the parts
-// of one body.
+// The tree that a script builds below addObject (models, solids and placements of them), and its conversion into the
+// parts of one body.
 //
 // Body coordinates. Scales are baked into the geometry. If all leaves of a child have one placement (the usual
 // Transform{…, Model "f.step"}), that placement belongs to the start pose and the body's coordinates are those of the
@@ -26,7 +26,7 @@ struct Node {
   bool recover = false;   ///< Model{ brep= }: faces and edges of a mesh file from its triangles
   // solid
   std::shared_ptr<const Solid> solid;
-  int pieces = 1;  ///< primitives and operations of `solid`, shared ones counted each time
+  int pieces = 1;  ///< primitives and operations of `solid`, repeated ones counted each time
   // group: similarity x -> pose * (scale x)
   double scale = 1;
   Pose pose;
@@ -35,10 +35,10 @@ struct Node {
   Node() = default;
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
-  ~Node();  ///< takes what hangs below apart in a loop: a chain of a million groups must not fill the stack
+  ~Node();  ///< iterative: a chain of a million groups must not overflow the stack
 };
 
-/// Does `node` hang somewhere below `top`, or is it `top`? `visit` is called for each group that is looked into, once.
+/// True if `node` is `top` or somewhere below it. Calls `visit` once for each group that is searched.
 template <typename Visit>
 [[nodiscard]] bool hangs_below(const Node& top, const Node& node, Visit visit) {
   std::vector<const Node*> waiting = {&top};
@@ -60,7 +60,7 @@ struct PlacedParts {
   std::string stem;         ///< file name without folder and extension of the first model; empty for solids
 };
 
-/// A script can share and nest nodes so that few of them stand for very many: these are the most that are followed.
+/// Limits: a script can nest and reuse nodes so that few of them stand for very many.
 inline constexpr int kSolidPiecesMax = 1000;
 inline constexpr int kNodesMax = 10'000;
 inline constexpr int kNodeDepthMax = 100;
@@ -72,7 +72,7 @@ inline constexpr int kNodeDepthMax = 100;
 /// The parts of a model file, with the meaning of scale and recover that LoadOptions has.
 [[nodiscard]] const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale, bool recover);
 
-/// A part seen from other coordinates: every point p becomes X * p. Area, volume and trimmed bounds stay.
+/// A part in other coordinates: every point p becomes X * p. Area, volume and trimmed bounds do not change.
 /// @pre X is finite, its rotation unit
 [[nodiscard]] Part placed(const Part& part, const Pose& X);
 

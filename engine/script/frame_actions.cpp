@@ -38,7 +38,7 @@ bool FrameActions::remove(std::uint64_t id) {
 void FrameActions::update(double rate) {
   VERISIM_ASSERT(is_positive(rate));
   VERISIM_ASSERT(running_ == nullptr);
-  // Actions that are added meanwhile stand between these and wait for the next frame.
+  // Actions that are added meanwhile are inserted between these and wait for the next script frame.
   std::vector<Action*> due;
   due.reserve(actions_.size());
   for (const auto& action : actions_) due.push_back(action.get());

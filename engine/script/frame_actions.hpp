@@ -1,10 +1,10 @@
 // Frame actions: functions of a script that live on while the simulation runs, each in its own coroutine, resumed once
 // a script frame (VR JuggLua's Actions).
 //
-// Promises: actions run in the order of adding. One that was added inside an action first runs in the next frame, just
-// ahead of the one that added it. The first resume passes dt; it happens at the next update, never when adding.
-// A failing action ends; the others and the simulation go on. Unlike VR JuggLua, remove() also works from inside an
-// action, on itself and on one that has not run yet in this frame.
+// Order: actions run in the order in which they were added. An action that was added inside another first runs in the
+// next script frame, just before the one that added it. The first resume passes dt; it happens at the next update,
+// never when adding. An action that fails ends; the others and the simulation go on. Unlike in VR JuggLua, remove()
+// also works inside an action, on itself and on one that has not yet run in this script frame.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class FrameActions {
   /// The function at `index` of L becomes an action. Raises if there are kActionsMax already.
   /// @pre there is a function at `index`
   std::uint64_t add(lua_State* L, int index);
-  /// False if there is no such action any more.
+  /// False if the action has ended or was removed.
   bool remove(std::uint64_t id);
   /// One script frame of 1 / rate seconds: resumes what is due.
   void update(double rate);

@@ -1,6 +1,7 @@
-// Which part of Lua's standard library a scenario sees, and what stands in for the part that is not the same in every
-// run: addresses, clocks, the order of pairs, random numbers, files.
+// The part of Lua's standard library that a scenario sees, with replacements for what differs between runs: addresses,
+// clocks, the order of pairs, random numbers, files.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -213,7 +214,7 @@ int load_text(lua_State* L) {
   return 1;
 }
 
-// Nothing to steer: when memory is collected must not depend on the script, nor the script on it.
+// No control: garbage collection must not depend on the script, nor the script on it.
 int collect_garbage(lua_State* L) {
   lua_pushnumber(L, 0);
   return 1;
@@ -241,8 +242,8 @@ int charged_by_length(lua_State* L) {
 
 int sort_table(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
-  const auto length = static_cast<double>(lua_objlen(L, 1));
-  Sandbox::of(L).charge(L, static_cast<std::uint64_t>(4 * length * std::max(1.0, std::ceil(std::log2(length + 1)))));
+  const std::uint64_t length = lua_objlen(L, 1);
+  Sandbox::of(L).charge(L, 4 * length * static_cast<std::uint64_t>(std::bit_width(length)));
   return charged_by_length(L);
 }
 

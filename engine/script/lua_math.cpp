@@ -1,4 +1,4 @@
-// What Lua's archive calls in place of the C library's functions (CMakeLists.txt): the same bits on every CPU.
+// Replacements of the C library's functions for Lua's archive (CMakeLists.txt): the same bits on every CPU.
 #include <cmath>
 #include <cstring>
 

@@ -8,20 +8,17 @@
 
 #include "engine/script/lua_pattern.hpp"
 #include "engine/script/sandbox.hpp"
+#include "engine/script/values.hpp"
 
 namespace verisim::script {
 namespace {
 
 constexpr std::uint64_t kStepsMax = 10'000'000;  // about 0.1 s
 
-std::string_view text_at(lua_State* L, int index) {
+std::string_view string_at(lua_State* L, int index) {
   std::size_t size = 0;
   const char* data = luaL_checklstring(L, index, &size);
   return {data, size};
-}
-
-void push_text(lua_State* L, std::string_view text) {
-  lua_pushlstring(L, text.data(), text.size());
 }
 
 // Where a search begins: positions count from 1, negative ones from the end.
@@ -81,8 +78,8 @@ int find_plainly(lua_State* L, std::string_view subject, std::string_view wanted
 }
 
 int find_or_match(lua_State* L, bool find) {
-  const std::string_view subject = text_at(L, 1);
-  const std::string_view pattern = text_at(L, 2);
+  const std::string_view subject = string_at(L, 1);
+  const std::string_view pattern = string_at(L, 2);
   const std::ptrdiff_t from = start_offset(L, 3, subject.size());
   const bool plain =
       find && (lua_toboolean(L, 4) != 0 || pattern.find_first_of("^$*+?.([%-") == std::string_view::npos);
@@ -109,8 +106,8 @@ int match(lua_State* L) {
 
 // Upvalues: subject, pattern, offset at which the next search begins.
 int next_match(lua_State* L) {
-  const std::string_view subject = text_at(L, lua_upvalueindex(1));
-  const std::string_view pattern = text_at(L, lua_upvalueindex(2));
+  const std::string_view subject = string_at(L, lua_upvalueindex(1));
+  const std::string_view pattern = string_at(L, lua_upvalueindex(2));
   const auto from = static_cast<std::ptrdiff_t>(lua_tonumber(L, lua_upvalueindex(3)));
   PatternMatcher matcher(subject, pattern, kStepsMax);
   if (matcher.anchored()) return 0;  // '^' would make every step begin at the same place
@@ -123,8 +120,8 @@ int next_match(lua_State* L) {
 }
 
 int gmatch(lua_State* L) {
-  text_at(L, 1);
-  text_at(L, 2);
+  string_at(L, 1);
+  string_at(L, 2);
   lua_settop(L, 2);
   lua_pushnumber(L, 0);
   lua_pushcclosure(L, guarded<next_match>, 3);
@@ -146,7 +143,7 @@ void add_replacement(lua_State* L, std::string& result, std::string_view subject
     lua_settop(L, top + 1);
     lua_gettable(L, 3);
   } else {
-    const std::string_view text = text_at(L, 3);
+    const std::string_view text = string_at(L, 3);
     for (std::size_t i = 0; i < text.size(); ++i) {
       if (text[i] != '%' || i + 1 == text.size()) {
         result += text[i];
@@ -162,7 +159,7 @@ void add_replacement(lua_State* L, std::string& result, std::string_view subject
         raise(L, "invalid capture index %{} in the replacement", c);
       } else {
         push_capture(L, subject, matcher.captures()[index]);
-        result += text_at(L, -1);
+        result += string_at(L, -1);
       }
     }
     lua_settop(L, top);
@@ -171,15 +168,15 @@ void add_replacement(lua_State* L, std::string& result, std::string_view subject
   if (lua_toboolean(L, -1) == 0)
     result += whole;
   else if (lua_isstring(L, -1) != 0)
-    result += text_at(L, -1);
+    result += string_at(L, -1);
   else
     raise(L, "invalid replacement value (a {})", luaL_typename(L, -1));
   lua_settop(L, top);
 }
 
 int gsub(lua_State* L) {
-  const std::string_view subject = text_at(L, 1);
-  const std::string_view pattern = text_at(L, 2);
+  const std::string_view subject = string_at(L, 1);
+  const std::string_view pattern = string_at(L, 2);
   const int type = lua_type(L, 3);
   if (type != LUA_TSTRING && type != LUA_TNUMBER && type != LUA_TTABLE && type != LUA_TFUNCTION)
     raise(L, "string.gsub: the replacement must be a text, table or function, not a {}", luaL_typename(L, 3));
@@ -217,7 +214,7 @@ int gsub(lua_State* L) {
 }
 
 int repeat(lua_State* L) {
-  const std::string_view text = text_at(L, 1);
+  const std::string_view text = string_at(L, 1);
   const double count = std::max(0.0, std::floor(luaL_checknumber(L, 2)));
   const double size = count * static_cast<double>(text.size());
   if (!(size <= 0x1p28)) raise(L, "string.rep: the result would be {:.0f} bytes long", size);

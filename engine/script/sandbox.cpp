@@ -30,7 +30,7 @@ std::string global_suggestion(lua_State* L, const std::string& text) {
   return nearest.empty() ? std::string{} : fmt::format("; did you mean '{}'?", nearest);
 }
 
-// Does a message begin with FILE:LINE:, or with the option of the command line that it is about?
+// True if a message begins with FILE:LINE: or with an option of the command line.
 bool says_where(const std::string& text) {
   if (text.rfind("--", 0) == 0) return true;
   const std::size_t colon = text.find(':');

@@ -1,5 +1,5 @@
-// One Lua 5.1 interpreter that can do nothing but compute: bounded in memory and in work, without files, clocks,
-// addresses or anything else that differs between two runs.
+// A sandboxed Lua 5.1 interpreter: bounded in memory and in work, without files, clocks, addresses or anything else
+// that differs between two runs.
 //
 // Lua is linked as C++ (its errors are exceptions): a function called from Lua may hold objects with destructors when
 // it raises. Only engine/script includes Lua's headers.
@@ -18,7 +18,7 @@
 
 namespace verisim::script {
 
-/// What kept a chunk or a call from coming to its end. `text` is one line that begins with FILE:LINE where that is
+/// The failure of a chunk or a call. `text` is one line that begins with FILE:LINE where that is
 /// known.
 struct LuaFailure {
   std::string text;
@@ -37,9 +37,9 @@ class Sandbox {
   [[nodiscard]] lua_State* lua() const { return lua_; }
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Grants `work` units from now on: instructions, and what library functions charge. Forgets an exceeded limit.
+  /// Sets the allowance to `work` units: instructions, and charges of library functions. Clears an exceeded limit.
   void allow(std::uint64_t work);
-  /// For functions whose work no instruction shows. Raises a Lua error once the allowance is spent.
+  /// Charges work that is not counted as instructions. Raises a Lua error once the allowance is spent.
   void charge(lua_State* L, std::uint64_t work);
 
   /// Compiles text (never bytecode) and leaves the function on L's stack; on failure leaves nothing.
@@ -51,13 +51,13 @@ class Sandbox {
   enum class Resumed { ended, yielded, failed };
   Resumed resume(lua_State* thread, int arguments, LuaFailure& failure);
 
-  /// The order in which the object at `index` (table, function, thread, full userdata) was made among all objects:
-  /// what stands in for its address wherever an order or a name is asked for.
+  /// Creation number of the object at `index` (table, function, thread, full userdata) among all objects. It replaces
+  /// the address wherever an order or a name is needed.
   [[nodiscard]] std::uint64_t creation_order(lua_State* L, int index) const;
   /// A small number for the object, given at the first request: what tostring() shows for its address.
   [[nodiscard]] std::uint32_t shown_number(lua_State* L, int index);
 
-  // What the standard library needs from outside.
+  // Functions that the standard library needs.
   virtual void print(const std::string& line) = 0;
   [[nodiscard]] virtual double clock() const = 0;  ///< simulated time, s
   [[nodiscard]] virtual double random() = 0;       ///< next of the run's stream, in [0, 1)

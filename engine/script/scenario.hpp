@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/run_figures.hpp"
 #include "engine/simulation/inputs.hpp"
 #include "engine/simulation/scene.hpp"
 #include "engine/simulation/simulation.hpp"
@@ -23,13 +24,6 @@ struct ScenarioOptions {
   std::optional<double> duration;
   std::size_t memory_limit = std::size_t{256} << 20;  ///< bytes of Lua memory
   std::uint64_t instruction_limit = 200'000'000;      ///< while building; and per script frame 10'000'000
-};
-
-/// A value measured by the script: measure(name, value, unit).
-struct Measure {
-  std::string name;
-  double value;
-  std::string unit;
 };
 
 class Scenario {
@@ -49,7 +43,7 @@ class Scenario {
   [[nodiscard]] const std::string& outcome() const;   ///< outcome("…"); empty if none was said
   [[nodiscard]] bool finished() const;  ///< the script asked to stop (outcome with stop, simulation:stop())
   [[nodiscard]] const std::vector<Measure>& measures() const;
-  [[nodiscard]] std::vector<std::string> notices() const;  ///< questioned or ignored things, each once
+  [[nodiscard]] std::vector<std::string> notices() const;  ///< warnings and ignored options, each once
 
  private:
   struct Implementation;

@@ -13,36 +13,6 @@ std::string file_name_of(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-/// The hardware or source at the inner end of a chain of filters: it carries the name.
-DeviceNode& innermost(DeviceNode& node) {
-  DeviceNode* at = &node;
-  while ((at->kind == DeviceNode::Kind::scale || at->kind == DeviceNode::Kind::translate) && at->inner)
-    at = at->inner.get();
-  return *at;
-}
-
-std::shared_ptr<Device> make_device(DeviceNode& node, std::uint64_t seed) {
-  if (node.device) return node.device;
-  const std::shared_ptr<Device> inner = node.inner ? make_device(*node.inner, seed) : nullptr;
-  node.device = at_place(node.place, [&]() -> std::shared_ptr<Device> {
-    switch (node.kind) {
-      case DeviceNode::Kind::hardware:
-        return make_hardware(node.hardware, inner);
-      case DeviceNode::Kind::replay:
-        return make_replay(node.name, node.samples);
-      case DeviceNode::Kind::hand:
-        if (!node.own_seed) node.hand.seed = seed;
-        return make_hand(node.hand);
-      case DeviceNode::Kind::scale:
-        return make_scale(inner, node.factor);
-      case DeviceNode::Kind::translate:
-        return make_translate(inner, node.translation);
-    }
-    return nullptr;
-  });
-  return node.device;
-}
-
 }  // namespace
 
 ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenario_inputs)
@@ -82,10 +52,10 @@ void ScriptState::finish() {
   declaring.clear();
   if (options.seed) scene.parameters.seed = *options.seed;
   if (options.duration) scene.parameters.duration = options.duration;
-  name_devices();
-  finish_devices();
+  name_devices(devices);
   bind_devices();
-  finish_heads();
+  for (const DevicePointer& device : devices) scene.devices.push_back(make_device(*device, scene.parameters.seed));
+  finish_companions();
   for (const auto& grasp : grasps) {
     const DeviceNode& device = *grasp.first;
     scene.grasps.push_back(
@@ -100,74 +70,59 @@ void ScriptState::check_sets() const {
        key);
 }
 
-void ScriptState::name_devices() {
-  std::vector<std::string> taken;
-  for (const auto& device : devices) {
-    DeviceNode& node = innermost(*device);
-    if (node.name.empty()) continue;
-    if (std::find(taken.begin(), taken.end(), node.name) != taken.end())
-      fail(ErrorKind::input, "{}: there is a device '{}' already; give each another name=", node.place, node.name);
-    taken.push_back(node.name);
-  }
-  for (const auto& device : devices) {
-    DeviceNode& node = innermost(*device);
-    if (node.name.empty()) {
-      const std::string base = node.kind == DeviceNode::Kind::hand     ? "hand"
-                               : node.kind == DeviceNode::Kind::replay ? "replay"
-                                                                       : node.hardware.name;
-      node.name = base;
-      for (int i = 2; std::find(taken.begin(), taken.end(), node.name) != taken.end(); ++i)
-        node.name = fmt::format("{}{}", base, i);
-      taken.push_back(node.name);
-    }
-    node.hardware.name = node.name;
-    node.hand.name = node.name;
-    if (node.inner && node.inner->name.empty()) node.inner->name = node.inner->hand.name = node.name;
-  }
-}
-
-void ScriptState::finish_devices() {
-  for (const auto& node : devices) scene.devices.push_back(make_device(*node, scene.parameters.seed));
-}
-
 void ScriptState::bind_devices() {
   std::vector<std::string> names;
   for (const auto& device : devices) names.push_back(innermost(*device).name);
-  for (const auto& head : heads) {
-    if (std::find(names.begin(), names.end(), head->name) != names.end())
-      fail(ErrorKind::input, "{}: there is a device '{}' already; give the WiiHead another name=", head->place,
-           head->name);
+  for (const auto& node : companions) {
+    if (std::find(names.begin(), names.end(), node->name) != names.end())
+      fail(ErrorKind::input, "{}: there is a device '{}' already; give the {} another name=", node->place, node->name,
+           node->word);
   }
   for (const auto& [wanted, source] : options.binds) {
-    if (bind_head(wanted, source)) continue;
+    if (bind_companion(wanted, source)) continue;
     const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
       fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted,
            suggestion(wanted, names));
     DeviceNode& node = innermost(*devices[static_cast<std::size_t>(found - names.begin())]);
-    if (node.kind != DeviceNode::Kind::hardware)
+    if (!node.drivable)
       fail(ErrorKind::input,
            "--bind {}={}: '{}' is driven by the scenario itself; bind a device of Devices.Sensable or Devices.Haption",
            wanted, source, wanted);
-    at_place(fmt::format("--bind {}={}", wanted, source), [&, bound = source] {
-      drive(*node.device, make_replay(node.name, read_samples(inputs, bound, TraceLimits{}.max_gap, false)));
-    });
+    const std::string place = fmt::format("--bind {}={}", wanted, source);
+    if (node.inner)
+      fail(ErrorKind::input,
+           "{}: device '{}' is driven already by the scenario; drop the --bind or the scenario's source", place,
+           wanted);
+    auto bound = std::make_shared<DeviceNode>();
+    bound->name = bound->made_as = node.name;
+    bound->default_name = "replay";
+    bound->place = place;
+    bound->make =
+        at_place(place, [&, trace = source] { return replay_of(inputs, trace, TraceLimits{}.max_gap, false); });
+    node.inner = std::move(bound);
   }
 }
 
-bool ScriptState::bind_head(const std::string& wanted, const std::string& source) {
-  const auto found = std::find_if(heads.begin(), heads.end(), [&](const auto& head) { return head->name == wanted; });
-  if (found == heads.end()) return false;
-  (*found)->trace = source;
+void ScriptState::add_companion(lua_State* L, std::shared_ptr<CompanionNode> node) {
+  for (const auto& other : companions)
+    if (other->name == node->name)
+      raise(L, "{}: there is a {} '{}' already; give each a name=", node->word, other->word, node->name);
+  companions.push_back(std::move(node));
+}
+
+bool ScriptState::bind_companion(const std::string& wanted, const std::string& source) {
+  const auto found =
+      std::find_if(companions.begin(), companions.end(), [&](const auto& node) { return node->name == wanted; });
+  if (found == companions.end()) return false;
+  (*found)->bind(source);
   (*found)->place = fmt::format("--bind {}={}", wanted, source);
   return true;
 }
 
-void ScriptState::finish_heads() {
-  for (const auto& node : heads) {
-    at_place(node->place, [&] { make_head(*node, inputs, scene.parameters.seed); });
-    scene.heads.push_back(node->head);
-  }
+void ScriptState::finish_companions() {
+  for (const auto& node : companions)
+    scene.companions.push_back(at_place(node->place, [&] { return node->make(inputs, scene.parameters.seed); }));
 }
 
 std::size_t ScriptState::device_index(const DeviceNode& wanted) const {
@@ -232,25 +187,6 @@ double ScriptState::random() {
 void ScriptState::seed_random(double seed) {
   random_name_ = fmt::format("script {}", seed);
   randoms_drawn_ = 0;
-}
-
-HapticSamples read_samples(Inputs& inputs, const std::string& name, double max_gap, bool allow_gaps) {
-  TraceLimits limits;
-  limits.max_gap = max_gap;
-  limits.allow_gaps = allow_gaps;
-  const Trace trace = parse_trace(name, inputs.read(name), "haptic", limits);
-  HapticSamples samples;
-  const auto column = [&](const char* wanted) { return static_cast<std::size_t>(trace.column(wanted)); };
-  const std::size_t t = column("t"), px = column("px"), py = column("py"), pz = column("pz");
-  const std::size_t qx = column("qx"), qy = column("qy"), qz = column("qz"), qw = column("qw");
-  const bool has_button = trace.column("button") >= 0;
-  for (std::size_t row = 0; row < trace.rows(); ++row) {
-    const auto at = [&](std::size_t c) { return trace.at(row, c); };
-    samples.t.push_back(at(t) - trace.at(0, t));
-    samples.pose.push_back({{at(px), at(py), at(pz)}, Quaterniond(at(qw), at(qx), at(qy), at(qz)).normalized()});
-    if (has_button) samples.button.push_back(at(column("button")) != 0 ? 1 : 0);
-  }
-  return samples;
 }
 
 }  // namespace verisim::script

@@ -1,5 +1,5 @@
-// What the words of a scenario act on: the scene while it is built, then the simulation while it runs. One per script;
-// every word reaches it by ScriptState::of(L).
+// The state on which the words of a scenario act: the scene while it is built, then the running simulation. One per
+// script; every word gets it by ScriptState::of(L).
 #pragma once
 
 #include <map>
@@ -11,55 +11,24 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
-#include "engine/device/hardware.hpp"
-#include "engine/device/sources.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/assembly_node.hpp"
+#include "engine/script/companion_node.hpp"
+#include "engine/script/device_node.hpp"
 #include "engine/script/frame_actions.hpp"
 #include "engine/script/sandbox.hpp"
 #include "engine/script/scenario.hpp"
 #include "engine/simulation/declaring.hpp"
-#include "engine/wii/head.hpp"
 
 namespace verisim::script {
 
 /// Work units that each action, and each chunk of the run buffer, may spend in one script frame.
 inline constexpr std::uint64_t kFrameWork = 10'000'000;
 
-/// What a line of /events costs a script: it is kept outside Lua's memory.
+/// Work units for a line of /events, which is stored outside Lua's memory.
 inline constexpr std::uint64_t kEventWork = 500;
-/// Frame actions that may be there at one time.
+/// Largest number of frame actions at one time.
 inline constexpr std::size_t kActionsMax = 1000;
-
-/// A device as described; made real by finish_devices, when seed and bindings are known.
-struct DeviceNode {
-  enum class Kind { hardware, replay, hand, scale, translate };
-  Kind kind = Kind::hardware;
-  std::string name;                         ///< empty until finish_devices for one without a name
-  std::string place;                        ///< FILE:LINE of the word, for later errors
-  HardwareDescription hardware;             // hardware
-  HapticSamples samples;                    // replay
-  HandDescription hand;                     // hand
-  bool own_seed = false;                    // hand: seed= was given
-  double factor = 1;                        // scale
-  Vector3d translation = Vector3d::Zero();  // translate
-  std::shared_ptr<DeviceNode> inner;        ///< hardware: its source (may be null); filters: what they wrap
-  std::shared_ptr<Device> device;           ///< null until finish_devices
-};
-
-/// A WiiHead as described; made real by finish, when seed and bindings are known.
-struct HeadNode {
-  std::string name;
-  std::string place;  ///< FILE:LINE of the word
-  std::string tracker = "scaat";
-  std::string trace;                         ///< a wii trace; empty: virtual_remote
-  TraceLimits limits;                        ///< of the trace
-  wii::VirtualSourceOptions virtual_remote;  ///< name and seed are filled in by make_head
-  Pose X_WL;                                 ///< where the remote stands, levelled
-  std::shared_ptr<wii::Head> head;           ///< null until make_head
-};
-/// Error(input) for a trace that cannot be read or does not fit the tracker.
-void make_head(HeadNode& node, Inputs& inputs, std::uint64_t seed);
 
 struct BodyHandle {
   std::size_t index;  ///< in Scene::bodies
@@ -75,7 +44,7 @@ struct FrameActionHandle {
   std::uint64_t id;
 };
 
-/// Stands for a material, a light, a font …: every member of it is again such a thing, every call gives one.
+/// Placeholder for a material, a light, a font …: every member and every call of it is again a placeholder.
 struct Drawing {};
 
 class ScriptState : public Sandbox {
@@ -89,7 +58,7 @@ class ScriptState : public Sandbox {
   void finish();
   void attach(Simulation& simulation);
 
-  /// A questioned or ignored thing: told once, on stderr by the caller of Scenario::notices and in /events.
+  /// Records a warning or an ignored option once, for stderr (by the caller of Scenario::notices) and /events.
   void notice(const std::string& text);
   void event(const std::string& kind, const std::string& text);
   /// Runs one piece of the running scene's script; a failure becomes an event and the simulation goes on.
@@ -113,9 +82,9 @@ class ScriptState : public Sandbox {
   Inputs& inputs;
   Scene scene;
   bool scene_taken = false;
-  std::vector<std::shared_ptr<DeviceNode>> devices;  ///< in the order of addDevice
-  std::vector<std::shared_ptr<HeadNode>> heads;      ///< in the order of WiiHead
-  std::vector<std::pair<std::shared_ptr<DeviceNode>, std::size_t>> grasps;
+  std::vector<DevicePointer> devices;                      ///< in the order of addDevice
+  std::vector<std::shared_ptr<CompanionNode>> companions;  ///< in the order of their words
+  std::vector<std::pair<DevicePointer, std::size_t>> grasps;
   std::vector<std::shared_ptr<CollisionCounter>> counters;
   Simulation* simulation = nullptr;  ///< null while the scene is built
 
@@ -134,16 +103,16 @@ class ScriptState : public Sandbox {
   std::vector<double> masses;                  ///< of described bodies, kg
   std::map<std::size_t, Declaring> declaring;  ///< bodies whose voxels the script goes through; until finish()
 
+  /// Raises if a companion of that name is there.
+  void add_companion(lua_State* L, std::shared_ptr<CompanionNode> node);
   /// Index in scene.devices of the chain that `node` is part of. Error(input) if it was never added.
   [[nodiscard]] std::size_t device_index(const DeviceNode& node) const;
 
  private:
   void check_sets() const;
-  void finish_devices();
   void bind_devices();
-  [[nodiscard]] bool bind_head(const std::string& wanted, const std::string& source);
-  void finish_heads();
-  void name_devices();
+  [[nodiscard]] bool bind_companion(const std::string& wanted, const std::string& source);
+  void finish_companions();
   void frame();
 
   std::set<std::string> told_;
@@ -151,9 +120,6 @@ class ScriptState : public Sandbox {
   std::string random_name_ = "script";
   std::uint64_t randoms_drawn_ = 0;
 };
-
-/// HapticSamples of a trace's content. `name` is for the messages.
-[[nodiscard]] HapticSamples read_samples(Inputs& inputs, const std::string& name, double max_gap, bool allow_gaps);
 
 /// Runs `make` and puts `place` before the text of an Error that it throws.
 template <typename Make>

@@ -86,7 +86,11 @@ Quaterniond rotation_at(lua_State* L, int index, const std::string& what) {
   return rotation.normalized();
 }
 
-void push_text(lua_State* L, const std::string& text) {
+int no_effect(lua_State* /*L*/) {
+  return 0;
+}
+
+void push_text(lua_State* L, std::string_view text) {
   lua_pushlstring(L, text.data(), text.size());
 }
 

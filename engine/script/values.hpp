@@ -1,11 +1,12 @@
-// Values between Lua and C++: objects of the engine as Lua userdata, and the checked reading of what a script gives.
-// Everything here raises a Lua error that names the word, the field, what it is and what it must be.
+// Values between Lua and C++: objects of the engine as Lua userdata, and checked reading of a script's values. Errors
+// are Lua errors that name the word, the field, its value and the required value.
 #pragma once
 
 #include <memory>
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -99,7 +100,7 @@ T* get_if(lua_State* L, int index) {
 void push_matrix_of(lua_State* L, const Pose& pose);
 [[nodiscard]] Pose pose_of_matrix(lua_State* L, const Matrix& matrix, const std::string& what);
 
-/// What stands at `index`, for messages: "a text ('abc')", "nothing", "a body".
+/// Description of the value at `index` for messages: "a text ('abc')", "nothing", "a body".
 [[nodiscard]] std::string described(lua_State* L, int index);
 
 /// The T at `index`; `what` begins the message if something else is there.
@@ -116,7 +117,10 @@ T& get(lua_State* L, int index, const std::string& what) {
 [[nodiscard]] Vector3d vector_at(lua_State* L, int index, const std::string& what);  ///< osg.Vec3 or {x, y, z}
 [[nodiscard]] Quaterniond rotation_at(lua_State* L, int index,
                                       const std::string& what);  ///< osg.Quat or {x, y, z, w}; unit
-void push_text(lua_State* L, const std::string& text);
+void push_text(lua_State* L, std::string_view text);
+
+/// A word that is accepted and does nothing.
+int no_effect(lua_State* L);
 
 /// ", or an empty string": "; did you mean 'x'? (a, b, c)" for a wrong name among `known` (sorted here).
 [[nodiscard]] std::string suggestion(const std::string& name, std::vector<std::string> known);

@@ -49,8 +49,7 @@ int update_frame_actions(lua_State*) {
   return 0;
 }  // the frame clock updates them
 
-// --- run buffer: chunks run at the next script frame, in order; unlike VR JuggLua's it drops none
-// -----------------------
+// --- run buffer: chunks run at the next script frame, in order. Unlike VR JuggLua's it drops none. -------------------
 
 int add_string(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
@@ -69,10 +68,6 @@ int add_file(lua_State* L) {
   return 1;
 }
 
-int nothing(lua_State*) {
-  return 0;
-}
-
 }  // namespace
 
 void add_action_words(lua_State* L) {
@@ -86,8 +81,8 @@ void add_action_words(lua_State* L) {
   lua_newtable(L);
   set_function<add_string>(L, "addString");
   set_function<add_file>(L, "addFile");
-  set_function<nothing>(L, "init");
-  set_function<nothing>(L, "runBuffer");
+  set_function<no_effect>(L, "init");
+  set_function<no_effect>(L, "runBuffer");
   lua_setglobal(L, "runbuf");
 }
 

@@ -1,5 +1,4 @@
-// What addObject returns: a body that reads its state, while the scene is built from the description and then from the
-// simulation.
+// The body that addObject returns. Its members read the description while the scene is built, then the simulation.
 #include <algorithm>
 
 #include "engine/script/script_state.hpp"

@@ -10,7 +10,7 @@
 
 namespace verisim::script {
 
-/// A shape whose fields a script sets; which of them it has says kKinds.
+/// A shape whose fields a script sets. kKinds lists the fields of each kind.
 struct DeclaredShape {
   std::size_t kind;
   Vector3d place = Vector3d::Zero(), direction = Vector3d::UnitZ();
@@ -40,7 +40,7 @@ Face face_on(Surface surface) {
   return face;
 }
 
-/// A line is taken to be long and a circle to be whole: nothing of their ends is declared.
+/// A line is assumed to be long and a circle to be closed, because their ends are not declared.
 Edge edge_on(Curve curve, std::array<double, 2> t_range) {
   Edge edge;
   edge.curve = std::move(curve);
@@ -52,7 +52,7 @@ constexpr double kLineHalf = 0.5;  // m
 Entity plane(const DeclaredShape& s, const Vector3d& n) {
   return face_on(Plane{s.place, n, n.unitOrthogonal()});
 }
-// Whether a round face is a hole, the voxels tell that get it.
+// Whether a curved face is a hole is found from its voxels.
 Entity cylinder(const DeclaredShape& s, const Vector3d& n) {
   return face_on(Cylinder{s.place, n, n.unitOrthogonal(), s.sizes[0], false});
 }
@@ -167,7 +167,7 @@ int feature_set(lua_State* L) {
   return 1;
 }
 
-// Takes what a shape is now: setting its fields later does not change a set.
+// Copies a shape: fields that are set later do not change the set.
 int boundary_feature(lua_State* L) {
   push(L, DeclaredShape(get<DeclaredShape>(L, 1, "BoundaryFeature: its argument")));
   return 1;
@@ -216,12 +216,12 @@ const Declaring& voxels_of(lua_State* L, std::size_t body, const char* word) {
   const auto known = state.declaring.find(body);
   if (known != state.declaring.end()) return known->second;
   Declaring voxels(state.described_body(body));
-  // Paid for as work, so that a loop cannot fill the machine with voxels: they lie outside Lua's memory.
+  // Charged as work, because voxels lie outside Lua's memory: a loop must not fill the machine with them.
   state.charge(L, voxels.memory_bytes() / 4);
   return state.declaring.emplace(body, std::move(voxels)).first->second;
 }
 
-// body:foreachSurfaceVoxel(f): f(x, y, z) for the centre of each, body coordinates; what f returns counts for nothing.
+// body:foreachSurfaceVoxel(f): f(x, y, z) for the centre of each, body coordinates; results of f are ignored.
 int foreach_surface_voxel(lua_State* L) {
   const Declaring& voxels = voxels_of(L, body_at(L), "foreachSurfaceVoxel");
   if (lua_type(L, 2) != LUA_TFUNCTION)

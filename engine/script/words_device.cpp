@@ -1,7 +1,10 @@
-// Devices, the filters that wrap them, and what holds what.
+// Devices, the filters that wrap them, and grasps.
 #include <cmath>
 
+#include "engine/device/hardware.hpp"
+#include "engine/device/sources.hpp"
 #include "engine/record/trace.hpp"
+#include "engine/script/device_node.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 
@@ -9,33 +12,13 @@ namespace verisim::script {
 
 namespace {
 
-using DevicePointer = std::shared_ptr<DeviceNode>;
-
-constexpr int kChainMax = 100;        // filters around one device
 constexpr double kOmniScale = 20;     // SPARTA's default for the Phantom Omni
 constexpr double kVirtuoseScale = 1;  // and for the Virtuose
 
-DevicePointer new_device(lua_State* L, DeviceNode::Kind kind) {
-  auto node = std::make_shared<DeviceNode>();
-  node->kind = kind;
-  node->place = where(L);
-  return node;
-}
-
-DevicePointer device_at(lua_State* L, int index, const std::string& what) {
-  return get<DevicePointer>(L, index, what);
-}
-
-void check_building(lua_State* L, const char* word) {
-  if (ScriptState::of(L).simulation != nullptr)
-    raise(L, "{}: the simulation runs already; call it while the scene is built", word);
-}
-
 DevicePointer scaled_device(lua_State* L, DevicePointer inner, double factor) {
   if (factor == 1) return inner;
-  DevicePointer node = new_device(L, DeviceNode::Kind::scale);
-  node->factor = factor;
-  node->inner = std::move(inner);
+  DevicePointer node = new_filter(L, std::move(inner));
+  node->make = [factor](const DeviceMaking& making) { return make_scale(making.inner, factor); };
   return node;
 }
 
@@ -45,21 +28,25 @@ int hardware(lua_State* L, const char* word, HardwareDescription description, do
              std::initializer_list<const char*> without_effect) {
   check_building(L, word);
   Fields fields(L, 1, word);
-  DevicePointer node = new_device(L, DeviceNode::Kind::hardware);
-  node->hardware = std::move(description);
-  node->name = fields.text("name").value_or("");
-  node->hardware.forces = fields.boolean("forces").value_or(true);
+  DevicePointer node = new_device(L, fields, description.name.c_str());
+  node->drivable = true;
+  description.forces = fields.boolean("forces").value_or(true);
   scale = fields.positive("scale").value_or(scale);
   if (fields.push("operator")) {
     node->inner = device_at(L, lua_gettop(L), fields.name_of("operator"));
-    if (node->inner->kind != DeviceNode::Kind::hand && node->inner->kind != DeviceNode::Kind::replay)
-      raise(L, "{}: operator must be a Devices.Hand or a Devices.Replay", word);
+    if (!node->inner->is_source())
+      raise(L, "{}: operator must be a source of motion, such as Devices.Hand or Devices.Replay", word);
     lua_pop(L, 1);
   }
   for (const char* name : without_effect)
     if (fields.accepted(name))
       ScriptState::of(L).notice(fmt::format("{}: {}: {} is accepted and changes nothing", where(L), word, name));
   fields.finish(false);
+  node->make = [description = std::move(description)](const DeviceMaking& making) {
+    HardwareDescription named = description;
+    named.name = making.name;
+    return make_hardware(std::move(named), making.inner);
+  };
   push(L, scaled_device(L, std::move(node), scale));
   return 1;
 }
@@ -78,14 +65,13 @@ int virtuose(lua_State* L) {
 int replay(lua_State* L) {
   check_building(L, "Devices.Replay");
   Fields fields(L, 1, "Devices.Replay");
-  DevicePointer node = new_device(L, DeviceNode::Kind::replay);
+  DevicePointer node = new_device(L, fields, "replay");
   const auto trace = fields.text("trace");
   if (!trace) raise(L, "Devices.Replay needs trace: Devices.Replay{{ trace = \"hand.csv\" }}");
-  node->name = fields.text("name").value_or("");
   const double max_gap = fields.positive("maxGap").value_or(TraceLimits{}.max_gap);
   const bool allow_gaps = fields.boolean("allowGaps").value_or(false);
   fields.finish(false);
-  node->samples = read_samples(ScriptState::of(L).inputs, *trace, max_gap, allow_gaps);
+  node->make = replay_of(ScriptState::of(L).inputs, *trace, max_gap, allow_gaps);
   push(L, node);
   return 1;
 }
@@ -143,9 +129,8 @@ void read_impedance(lua_State* L, Fields& fields, HandDescription& hand) {
 int hand_device(lua_State* L) {
   check_building(L, "Devices.Hand");
   Fields fields(L, 1, "Devices.Hand");
-  DevicePointer node = new_device(L, DeviceNode::Kind::hand);
-  HandDescription& hand = node->hand;
-  node->name = fields.text("name").value_or("");
+  DevicePointer node = new_device(L, fields, "hand");
+  HandDescription hand;
   read_path(L, fields, hand);
   // `repeat` is a keyword of Lua: as a key it needs ["repeat"].
   hand.repeat = fields.boolean("loop").value_or(false);
@@ -157,46 +142,37 @@ int hand_device(lua_State* L) {
   hand.angular_tremor = not_negative(L, fields, "angularTremor", 0);
   hand.error = fields.vector("error").value_or(Vector3d::Zero());
   hand.angular_error = fields.vector("angularError").value_or(Vector3d::Zero());
-  if (const auto seed = fields.number("seed")) {
-    if (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed))
-      raise(L, "Devices.Hand: seed must be a whole number, not {:g}", *seed);
-    hand.seed = static_cast<std::uint64_t>(*seed);
-    node->own_seed = true;
-  }
+  const std::optional<double> seed = fields.number("seed");
+  if (seed && (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed)))
+    raise(L, "Devices.Hand: seed must be a whole number, not {:g}", *seed);
   fields.finish(false);
+  node->make = [hand = std::move(hand), seed](const DeviceMaking& making) {
+    HandDescription named = hand;
+    named.name = making.name;
+    named.seed = seed ? static_cast<std::uint64_t>(*seed) : making.seed;
+    return make_hand(std::move(named));
+  };
   push(L, node);
   return 1;
 }
 
 // --- filters and the scene ------------------------------------------------------------------------------------------
 
-DevicePointer wrapped(lua_State* L, Fields& fields, const char* word) {
-  check_building(L, word);
-  fields.push_child(1);
-  DevicePointer inner = device_at(L, lua_gettop(L), fmt::format("{}: the device", word));
-  lua_pop(L, 1);
-  int length = 0;
-  for (const DeviceNode* node = inner.get(); node != nullptr; node = node->inner.get()) ++length;
-  if (length > kChainMax) raise(L, "{}: the device has {} filters already; make do with fewer", word, kChainMax);
-  return inner;
-}
-
 int translate_device(lua_State* L) {
   Fields fields(L, 1, "translateDevice");
-  DevicePointer node = new_device(L, DeviceNode::Kind::translate);
-  node->inner = wrapped(L, fields, "translateDevice");
+  DevicePointer node = new_filter(L, wrapped_device(L, fields, "translateDevice"));
   const auto translation = fields.vector("translation");
   if (!translation)
     raise(L, "translateDevice needs translation: translateDevice{{ device, translation = {{x, y, z}} }}");
-  node->translation = *translation;
   fields.finish(true);
+  node->make = [by = *translation](const DeviceMaking& making) { return make_translate(making.inner, by); };
   push(L, node);
   return 1;
 }
 
 int scale_device(lua_State* L) {
   Fields fields(L, 1, "scaleDevice");
-  DevicePointer inner = wrapped(L, fields, "scaleDevice");
+  DevicePointer inner = wrapped_device(L, fields, "scaleDevice");
   const auto factor = fields.positive("scale");
   if (!factor) raise(L, "scaleDevice needs scale: scaleDevice{{ device, scale = 4 }}");
   fields.finish(true);
@@ -254,12 +230,6 @@ int button_state(lua_State* L) {
   return 1;
 }
 
-const std::string& name_of(const DeviceNode& node) {
-  const DeviceNode* at = &node;
-  while (at->kind == DeviceNode::Kind::scale || at->kind == DeviceNode::Kind::translate) at = at->inner.get();
-  return at->name;
-}
-
 int device_member(lua_State* L) {
   const DevicePointer node = device_at(L, 1, "what a device's word is called on");
   const std::string name = text_at(L, 2, "a device's member");
@@ -267,7 +237,7 @@ int device_member(lua_State* L) {
   const DeviceReading reading = device != nullptr ? device->reading() : DeviceReading{};
   const Wrench rendered = device != nullptr ? device->rendered() : Wrench{};
   if (name == "name")
-    push_text(L, name_of(*node));
+    push_text(L, innermost(*node).name);
   else if (name == "handle" || name == "pose")
     push(L, Pose(reading.handle));
   else if (name == "raw")
@@ -292,7 +262,7 @@ int device_member(lua_State* L) {
 }
 
 int device_text(lua_State* L) {
-  push_text(L, fmt::format("device '{}'", name_of(*device_at(L, 1, "a device"))));
+  push_text(L, fmt::format("device '{}'", innermost(*device_at(L, 1, "a device")).name));
   return 1;
 }
 

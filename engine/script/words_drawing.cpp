@@ -1,4 +1,5 @@
-// What only draws, sounds or starts a window in VR JuggLua: accepted, ignored, and said so once per word and line.
+// Words of VR JuggLua that only draw, play sounds or open a window: accepted, ignored, and reported once per word and
+// line.
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 

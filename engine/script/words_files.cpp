@@ -19,7 +19,7 @@ std::string below(const std::string& folder, const std::string& name) {
   return folder == "." ? name : folder + "/" + name;
 }
 
-/// Where a script or model stands: as named, or in a folder of the search path. Empty if nowhere.
+/// The path of a script or model: as named, or in a folder of the search path. Empty if not found.
 std::string find_file(ScriptState& state, const std::string& name) {
   if (state.inputs.exists(name)) return name;
   for (const std::string& folder : state.search_path)
@@ -125,10 +125,6 @@ int require_module(lua_State* L) {
 
 int help(lua_State* L) {
   ScriptState::of(L).print("The words of scenarios: engine/script/WORDS.md");
-  return 0;
-}
-
-int no_effect(lua_State*) {
   return 0;
 }
 

@@ -265,7 +265,7 @@ int intersect(lua_State* L) {
   return combine(L, Solid::Kind::intersection, "each side of '*'");
 }
 
-int translate(lua_State* L) {
+int node_translate(lua_State* L) {
   const NodePointer inner = solid_at(L, 1, "what :translate moves");
   Pose placement;
   if (lua_gettop(L) >= 4)
@@ -277,7 +277,7 @@ int translate(lua_State* L) {
                     inner->pieces + 1);
 }
 
-int rotate(lua_State* L) {
+int node_rotate(lua_State* L) {
   const NodePointer inner = solid_at(L, 1, "what :rotate turns");
   const Pose placement{.position = Vector3d::Zero(), .rotation = rotation_at(L, 2, "rotate: the rotation")};
   return push_solid(L, {.kind = Solid::Kind::placed, .sizes = {}, .children = {inner->solid}, .placement = placement},
@@ -313,8 +313,8 @@ void add_node_words(lua_State* L) {
   set_function<add>(L, "__add");
   set_function<intersect>(L, "__mul");
   lua_newtable(L);
-  set_function<translate>(L, "translate");
-  set_function<rotate>(L, "rotate");
+  set_function<node_translate>(L, "translate");
+  set_function<node_rotate>(L, "rotate");
   set_function<add_child>(L, "addChild");
   lua_pushcclosure(L, guarded<node_member>, 1);
   lua_setfield(L, -2, "__index");

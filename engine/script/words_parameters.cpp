@@ -155,7 +155,7 @@ int say_outcome(lua_State* L) {
   return 0;
 }
 
-// The last value said under a name counts.
+// The last value of a name counts.
 int say_measure(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   Measure measure{

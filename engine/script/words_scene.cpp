@@ -16,8 +16,8 @@ template <typename Value>
 using Named = std::pair<const char*, Value>;
 
 /// The value that goes by `name`; any other name is an error that lists them.
-template <typename Value, std::size_t n>
-Value named(lua_State* L, const char* what, const std::string& name, const Named<Value> (&values)[n]) {
+template <typename Values>
+auto named(lua_State* L, const char* what, const std::string& name, const Values& values) {
   std::vector<std::string> names;
   for (const auto& [known, value] : values) {
     if (name == known) return value;
@@ -26,8 +26,11 @@ Value named(lua_State* L, const char* what, const std::string& name, const Named
   raise(L, "{} is '{}'{}", what, name, suggestion(name, names));
 }
 
-constexpr Named<Hybrid> kHybrids[] = {
-    {"off", Hybrid::off}, {"restore", Hybrid::restore}, {"blend", Hybrid::blend}, {"exact", Hybrid::exact}};
+std::vector<Named<Hybrid>> hybrids() {
+  std::vector<Named<Hybrid>> named;
+  for (const Hybrid method : hybrid::all()) named.emplace_back(method->name().data(), method);
+  return named;
+}
 constexpr Named<Integrator> kIntegrators[] = {{"semi-implicit", Integrator::semi_implicit},
                                               {"implicit", Integrator::implicit}};
 constexpr Named<ContactMethod> kContactMethods[] = {{"voxmap", ContactMethod::voxmap}, {"fcl", ContactMethod::fcl}};
@@ -36,12 +39,12 @@ constexpr Named<AlignmentMeasure> kAlignments[] = {
 constexpr Named<Reduction> kReductions[] = {{"common-freedom", Reduction::common_freedom},
                                             {"exactly-one", Reduction::exactly_one}};
 
-template <typename Value, std::size_t n>
-void read_named(lua_State* L, Fields& fields, const char* field, const Named<Value> (&values)[n], Value& value) {
+template <typename Values, typename Value>
+void read_named(lua_State* L, Fields& fields, const char* field, const Values& values, Value& value) {
   if (const auto name = fields.text(field)) value = named(L, field, *name, values);
 }
 
-// Words of SPARTA that change nothing here: said once, so that nobody thinks they do.
+// Words of SPARTA that have no effect here, reported once.
 void accept_without_effect(lua_State* L, Fields& fields, std::initializer_list<const char*> names) {
   for (const char* name : names)
     if (fields.accepted(name))
@@ -64,7 +67,7 @@ int define_simulation_parameters(lua_State* L) {
   if (const auto duration = fields.positive("duration")) p.duration = duration;
   p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
   read_named(L, fields, "integrator", kIntegrators, p.integrator);
-  read_named(L, fields, "hybrid", kHybrids, p.hybrid);
+  read_named(L, fields, "hybrid", hybrids(), p.hybrid);
   read_named(L, fields, "contact", kContactMethods, p.contact);
   read_named(L, fields, "alignment", kAlignments, p.alignment);
   read_named(L, fields, "reduction", kReductions, p.reduction);
@@ -85,7 +88,8 @@ int define_simulation_parameters(lua_State* L) {
   return 0;
 }
 
-// A name becomes a folder of the run file and a side of 'A~B': what would break those is replaced, with a notice.
+// A name becomes a folder of the run file and a side of 'A~B'. Characters that would break those are replaced, with a
+// notice.
 std::string recordable(lua_State* L, const std::string& name) {
   std::string result = name;
   for (char& c : result)
@@ -103,7 +107,7 @@ bool name_taken(const Scene& scene, const std::string& name) {
 
 std::string free_name(const Scene& scene, const std::string& stem) {
   std::string name = stem;
-  // From the number of bodies on, so that many of one stem are named in one look each.
+  // Numbers start at the number of bodies, so that each of many bodies of one stem needs one look-up.
   for (std::size_t i = scene.bodies.size() + 1; name_taken(scene, name); ++i) name = fmt::format("{}{}", stem, i);
   return name;
 }
@@ -127,7 +131,7 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
     lua_pop(L, 1);
   }
   PlacedParts placed_parts = resolve(nodes, state.inputs);
-  // Parts lie outside Lua's memory: they are paid for as work, so that a loop cannot fill the machine with bodies.
+  // Charged as work, because parts lie outside Lua's memory: a loop must not fill the machine with bodies.
   std::size_t triangles = 0;
   for (const Part& part : placed_parts.parts) triangles += part.mesh.triangles.size();
   state.charge(L, 20'000 + triangles + 10 * state.scene.bodies.size());
@@ -142,9 +146,9 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
 void read_hybrid(lua_State* L, Fields& fields, BodyDescription& body) {
   if (!fields.push("hybrid")) return;
   if (lua_type(L, -1) == LUA_TBOOLEAN)
-    body.hybrid = lua_toboolean(L, -1) != 0 ? Hybrid::restore : Hybrid::off;
+    body.hybrid = lua_toboolean(L, -1) != 0 ? hybrid::restore : hybrid::off;
   else
-    body.hybrid = named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"), kHybrids);
+    body.hybrid = named(L, "addObject: hybrid", text_at(L, -1, "addObject: hybrid"), hybrids());
   lua_pop(L, 1);
 }
 

@@ -176,7 +176,7 @@ int quat_component(lua_State* L) {
 }
 
 // q:makeRotate(angle, axis), or from one direction to another: q:makeRotate(from, to)
-int make_rotate(lua_State* L) {
+int quat_make_rotate(lua_State* L) {
   Quaterniond& q = quat_of(L, 1, "what is set");
   if (lua_type(L, 2) == LUA_TNUMBER)
     q = turning(lua_tonumber(L, 2), vector_at(L, 3, "makeRotate: the axis"));
@@ -221,7 +221,7 @@ int angle_axis(lua_State* L) {
 int axis(lua_State* L) {
   return push_vector(L, vector_at(L, 1, "Axis: the direction"));
 }
-int degrees(lua_State* L) {
+int radians_of_degrees(lua_State* L) {
   return push_number(L, number_at(L, 1, "Degrees: the angle") * (pinned::kPi / 180));
 }
 int radians(lua_State* L) {
@@ -265,7 +265,7 @@ void add_quat_type(lua_State* L) {
   set_function<quat_inverse>(L, "inverse");
   set_function<quat_conjugate>(L, "conj");
   set_function<quat_length>(L, "length");
-  set_function<make_rotate>(L, "makeRotate");
+  set_function<quat_make_rotate>(L, "makeRotate");
   set_function<slerp_quat>(L, "slerp");
   set_function<quat_angle>(L, "getAngle");
   set_function<quat_axis>(L, "getAxis");
@@ -285,7 +285,7 @@ void add_vector_words(lua_State* L) {
   for (const char* name : {"Vec", "Vecd", "Vecf"}) set_global<make_vector>(L, name);
   set_global<angle_axis>(L, "AngleAxis");
   set_global<axis>(L, "Axis");
-  set_global<degrees>(L, "Degrees");
+  set_global<radians_of_degrees>(L, "Degrees");
   set_global<radians>(L, "Radians");
   lua_newtable(L);
   const std::pair<const char*, double> units[] = {

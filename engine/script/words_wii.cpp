@@ -3,9 +3,35 @@
 
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
-#include "engine/simulation/wii_recording.hpp"
+#include "engine/script/wii_recording.hpp"
+#include "engine/wii/head.hpp"
 
 namespace verisim::script {
+
+/// A WiiHead as described.
+struct HeadNode : CompanionNode {
+  std::string tracker = "scaat";
+  std::string trace;                         ///< a wii trace; empty: virtual_remote
+  TraceLimits limits;                        ///< of the trace
+  wii::VirtualSourceOptions virtual_remote;  ///< name and seed are filled in by make
+  Pose X_WL;                                 ///< where the remote stands, levelled
+  std::shared_ptr<wii::Head> head;           ///< null until make
+
+  void bind(const std::string& source) override { trace = source; }
+  [[nodiscard]] std::shared_ptr<Companion> make(Inputs& inputs, std::uint64_t seed) override {
+    std::unique_ptr<wii::ReportSource> source;
+    if (trace.empty()) {
+      virtual_remote.name = name;
+      virtual_remote.seed = seed;
+      source = wii::make_virtual_source(virtual_remote);
+    } else {
+      source = wii::make_recorded_source(read_wii_recording(inputs, trace, limits));
+    }
+    head = std::make_shared<wii::Head>(name, std::move(source), tracker, X_WL);
+    return head;
+  }
+};
+
 namespace {
 
 using HeadPointer = std::shared_ptr<HeadNode>;
@@ -40,27 +66,27 @@ void read_remote(lua_State* L, Fields& fields, HeadNode& head) {
   lua_pop(L, 1);
 }
 
-void check_tracker(lua_State* L, const std::string& tracker) {
-  const std::vector<std::string>& known = wii::tracker_names();
-  if (tracker == "stereo") raise(L, "WiiHead: tracker 'stereo' needs two remotes, but a WiiHead has one");
+const wii::TrackerEntry& tracker_of(lua_State* L, const std::string& tracker) {
+  const std::vector<std::string> known = wii::tracker_names();
   if (std::find(known.begin(), known.end(), tracker) == known.end())
     raise(L, "WiiHead: tracker '{}' is not known{}", tracker, suggestion(tracker, known));
+  const wii::TrackerEntry& entry = wii::find_tracker(tracker);
+  if (entry.remotes > 1) raise(L, "WiiHead: tracker '{}' needs two remotes, but a WiiHead has one", tracker);
+  return entry;
 }
 
 int wii_head(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   if (state.simulation != nullptr) raise(L, "WiiHead: the simulation runs already; call it while the scene is built");
-  state.charge(L, 1000 + 100 * state.heads.size());
+  state.charge(L, 1000 + 100 * state.companions.size());
   Fields fields(L, 1, "WiiHead");
   auto head = std::make_shared<HeadNode>();
+  head->word = "WiiHead";
   head->place = where(L);
   head->name = fields.text("name").value_or("head");
-  for (const HeadPointer& other : state.heads)
-    if (other->name == head->name) raise(L, "WiiHead: there is a WiiHead '{}' already; give each a name=", head->name);
   head->tracker = fields.text("tracker").value_or(head->tracker);
-  check_tracker(L, head->tracker);
+  head->virtual_remote.leds = tracker_of(L, head->tracker).leds;
   read_remote(L, fields, *head);
-  if (head->tracker == "three-led") head->virtual_remote.leds = wii::LedLayout::triangle();
   if (fields.push("leds")) {
     head->virtual_remote.leds = leds_at(L, lua_gettop(L));
     lua_pop(L, 1);
@@ -70,12 +96,12 @@ int wii_head(lua_State* L) {
   head->limits.max_gap = fields.positive("maxGap").value_or(head->limits.max_gap);
   head->limits.allow_gaps = fields.boolean("allowGaps").value_or(false);
   fields.finish(false);
-  state.heads.push_back(head);
+  state.add_companion(L, head);
   push(L, head);
   return 1;
 }
 
-/// Where the head is believed to be; where the remote stands, as long as nothing is known.
+/// The tracked position of the head; that of the remote until there is one.
 Pose pose_of(const HeadNode& node) {
   if (node.head == nullptr || !node.head->estimate().pose.position.allFinite()) return node.X_WL;
   return node.head->world_pose();
@@ -108,18 +134,6 @@ int head_text(lua_State* L) {
 }
 
 }  // namespace
-
-void make_head(HeadNode& node, Inputs& inputs, std::uint64_t seed) {
-  std::unique_ptr<wii::ReportSource> source;
-  if (node.trace.empty()) {
-    node.virtual_remote.name = node.name;
-    node.virtual_remote.seed = seed;
-    source = wii::make_virtual_source(node.virtual_remote);
-  } else {
-    source = wii::make_recorded_source(read_wii_recording(inputs, node.trace, node.limits));
-  }
-  node.head = std::make_shared<wii::Head>(node.name, std::move(source), node.tracker, node.X_WL);
-}
 
 void add_wii_words(lua_State* L) {
   push_metatable<HeadPointer>(L);

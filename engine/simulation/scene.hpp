@@ -8,21 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/companion.hpp"
 #include "engine/constraint/alignment.hpp"
 #include "engine/constraint/reduction.hpp"
 #include "engine/device/device.hpp"
 #include "engine/geometry/part.hpp"
+#include "engine/simulation/hybrid_method.hpp"
 #include "engine/voxel/declared_features.hpp"
 
 namespace verisim {
 
-namespace wii {
-class Head;
-}
-
 enum class Integrator { semi_implicit, implicit };
-/// How much of the precise geometry acts; of two bodies that differ, the one that is listed first counts.
-enum class Hybrid { off, restore, blend, exact };
 
 /// How contacts of two bodies are found: pointshell against voxmap, or triangle against triangle to compare with (no
 /// hybrid method acts on those).
@@ -36,7 +32,7 @@ struct SimulationParameters {
   std::optional<double> duration;  ///< s; none: as long as the longest trace or operator task, else 1 s
   double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
-  Hybrid hybrid = Hybrid::restore;  ///< where both bodies have b-reps
+  Hybrid hybrid = hybrid::restore;  ///< where both bodies have b-reps; of two that differ the lesser acts
   ContactMethod contact = ContactMethod::voxmap;
   AlignmentMeasure alignment = AlignmentMeasure::by_type;
   Reduction reduction = Reduction::common_freedom;
@@ -74,9 +70,9 @@ struct Grasp {
 
 struct Scene {
   SimulationParameters parameters;
-  std::vector<BodyDescription> bodies;            ///< in the order of addObject
-  std::vector<std::shared_ptr<Device>> devices;   ///< in the order of addDevice: outermost filter of each chain
-  std::vector<std::shared_ptr<wii::Head>> heads;  ///< tracked beside the loop, in the order of WiiHead
+  std::vector<BodyDescription> bodies;                 ///< in the order of addObject
+  std::vector<std::shared_ptr<Device>> devices;        ///< in the order of addDevice: outermost filter of each chain
+  std::vector<std::shared_ptr<Companion>> companions;  ///< advanced beside the loop, in this order
   std::vector<Grasp> grasps;
   double grasp_distance = 0.1;  ///< m, handle to body's nearest point, for button grasping
 };

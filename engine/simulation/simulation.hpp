@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "engine/base/pose.hpp"
-#include "engine/constraint/constraint.hpp"
 #include "engine/record/run_file.hpp"
+#include "engine/simulation/frame_cost.hpp"
 #include "engine/simulation/scene.hpp"
+#include "engine/simulation/totals.hpp"
 
 namespace verisim {
 
@@ -20,29 +21,18 @@ struct SimulationOptions {
   unsigned threads = 1;
 };
 
-/// Work done in one frame; deterministic. One counter per kind of work (/cost).
-struct FrameCost {
-  std::uint64_t pairs_tested = 0;  ///< body pairs whose boxes overlap
-  std::uint64_t clusters = 0;
-  std::uint64_t points_tested = 0;
-  std::uint64_t voxels_read = 0;
-  std::uint64_t contacts = 0;
-  std::uint64_t lookups = 0;  ///< pairs of feature sets looked up
-  std::uint64_t recognitions = 0;
-  std::uint64_t exact_samples = 0;  ///< samples of precise edges that were tried against precise faces
-  std::uint64_t solver_steps = 0;   ///< Newton iterations of the exact response
-  std::uint64_t bytes_touched = 0;  ///< by the voxels' queries (contact/query.hpp)
-};
-
-/// The stages of a frame, as /timing/stage_ns counts them.
-inline constexpr std::array<const char*, 8> kStageNames = {"sources", "coupling", "query",  "response",
-                                                           "motion",  "render",   "clocks", "record"};
+/// The stages of a frame in their order, as /timing/stage_ns counts them.
+enum class Stage : std::uint8_t { sources, coupling, query, response, motion, render, clocks, record };
+inline constexpr std::array kStageNames = {"sources", "coupling", "query",  "response",
+                                           "motion",  "render",   "clocks", "record"};
+static_assert(kStageNames.size() == static_cast<std::size_t>(Stage::record) + 1, "every stage has its name");
+using StageTimes = std::array<std::uint32_t, kStageNames.size()>;  ///< ns
 
 class Simulation {
  public:
   /// Voxelizes what the scene needs (a body that can never come near another is not), places bodies and devices.
   /// Error(input) with body and reason: no volume, voxel size, mass not finite …
-  Simulation(Scene scene, const SimulationOptions& options);
+  Simulation(const Scene& scene, const SimulationOptions& options);
   ~Simulation();
 
   /// Advances from frame to frame + 1. Allocates nothing after the first call. Error(diverged) if a state stops being
@@ -56,7 +46,7 @@ class Simulation {
   [[nodiscard]] std::uint64_t collision_frames() const;
   [[nodiscard]] const FrameCost& cost() const;  ///< of the last frame
   /// Wall clock of each stage of the last frame [ns]: measured, never read by the simulation.
-  [[nodiscard]] const std::array<std::uint32_t, kStageNames.size()>& stage_ns() const;
+  [[nodiscard]] const StageTimes& stage_ns() const;
   [[nodiscard]] std::uint64_t state_hash() const;  ///< after the last frame
 
   // Bodies, by index in Scene::bodies.
@@ -74,7 +64,7 @@ class Simulation {
   [[nodiscard]] double mass(std::size_t body) const;
 
   /// Called between frames, at the first frame whose time is not before k / rate (integer arithmetic, no drift), in the
-  /// order of adding: script frames, trackers, firmware. `f` gets the simulated time.
+  /// order of adding, after the companions. `f` gets the simulated time.
   void add_clock(double rate_hz, std::function<void(double)> f);
 
   /// An event for /events; kept until clear_events.
@@ -92,15 +82,6 @@ class Simulation {
   };
   [[nodiscard]] Energy energy() const;
 
-  struct Totals {
-    double force_max = 0;        ///< N, largest contact force on a body
-    double penetration_max = 0;  ///< m
-    std::uint64_t contacts = 0;  ///< summed over all frames
-    std::uint64_t cache_hits = 0, cache_misses = 0;
-    std::uint64_t null_misses = 0;  ///< of the misses: recognized, and there was no constraint
-    std::array<std::uint64_t, kConstraintKindNames.size()>
-        constraint_frames{};  ///< frames in which any link had this kind
-  };
   [[nodiscard]] const Totals& totals() const;
 
  private:

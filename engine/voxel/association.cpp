@@ -15,10 +15,6 @@ namespace verisim {
 
 namespace {
 
-void add(BrickMask& mask, const BrickMask& more) {
-  for (std::size_t z = 0; z < mask.size(); ++z) mask[z] |= more[z];
-}
-
 BrickMask common(const BrickMask& a, const BrickMask& b) {
   BrickMask result;
   for (std::size_t z = 0; z < result.size(); ++z) result[z] = a[z] & b[z];
@@ -48,7 +44,7 @@ struct SurfaceBricks {
   std::vector<std::uint32_t> entry;
 };
 
-/// What all bricks read.
+/// Data that all bricks read.
 struct Model {
   Model(const Part& the_part, const Voxmap& the_map)
       : part(the_part),
@@ -91,8 +87,8 @@ struct Model {
   EdgeLists edges;
 };
 
-/// The sets of a run of bricks: those of each brick in the order of its voxels, each once per brick.
-struct RunOfSets {
+/// The sets of a chunk of bricks: those of each brick in the order of its voxels, each once per brick.
+struct SetsOfChunk {
   std::vector<EntityNumber> entities;
   std::vector<std::uint32_t> set_end;    // where each set ends in `entities`
   std::vector<std::uint32_t> brick_end;  // where each brick's sets end in `set_end`
@@ -102,10 +98,10 @@ struct RunOfSets {
 /// One brick after the other; keeps its buffers.
 class BrickAssociation {
  public:
-  BrickAssociation(const Model& model, EntityNumber first_edge, RunOfSets& run)
+  BrickAssociation(const Model& model, EntityNumber first_edge, SetsOfChunk& run)
       : model_(model), first_edge_(first_edge), run_(run) {}
 
-  /// Writes for each surface voxel of the brick 0 or 1 + its set's place among the brick's sets.
+  /// Writes for each surface voxel of the brick 0, or 1 + the index of its set among the brick's sets.
   void associate(std::size_t entry, FeatureSetId* features) {
     const std::size_t brick = model_.bricks.brick[entry];
     corner_ = brick_corner(brick, model_.map.bricks);
@@ -201,7 +197,7 @@ class BrickAssociation {
     }
   }
 
-  /// No bound passes through the box, so every piece that it cuts out of the surface is either of the face or not.
+  /// No bound passes through the box, so each piece of the surface in it is either within the face or outside.
   bool passes_within_bounds(const PreparedFace& face, std::uint32_t number, const GridBox& box) {
     probes_.clear();
     face.surface->add_probes(box, probes_);
@@ -223,7 +219,7 @@ class BrickAssociation {
   void write_sets(FeatureSetId* features) {
     const std::size_t first = run_.set_end.size();
     const auto begin_of = [&](std::size_t set) { return set == 0 ? 0 : run_.set_end[set - 1]; };
-    std::size_t last = first;  // the set of the voxel before, most likely that of the next
+    std::size_t last = first;  // the set of the last voxel, most likely that of the next
     for_each_cell(cells_, [&](int x, int y, int z) {
       set_.clear();
       for (const Passing& passing : passing_) {
@@ -263,7 +259,7 @@ class BrickAssociation {
 
   const Model& model_;
   EntityNumber first_edge_;  // number of the part's first edge
-  RunOfSets& run_;
+  SetsOfChunk& run_;
   Eigen::Vector3i corner_ = {0, 0, 0};
   BrickMask cells_{};  // the brick's surface voxels
   std::span<const std::uint32_t> triangles_;
@@ -274,11 +270,11 @@ class BrickAssociation {
   std::vector<EntityNumber> set_;
 };
 
-/// Gives the sets of all runs their numbers, in the order of the voxels.
-void number_sets(const std::vector<std::unique_ptr<RunOfSets>>& runs, const Model& model, VoxelBody& body) {
+/// Numbers the sets of all chunks in the order of the voxels.
+void number_sets(const std::vector<std::unique_ptr<SetsOfChunk>>& chunks, const Model& model, VoxelBody& body) {
   const Voxmap& map = body.voxmap;
   std::size_t entry = 0;
-  for (const auto& run : runs) {
+  for (const auto& run : chunks) {
     if (!run) continue;
     std::uint32_t set = 0, begin = 0;
     for (const std::uint32_t end : run->brick_end) {
@@ -317,19 +313,19 @@ AssociationReport associate_part(const Part& part, unsigned threads, VoxelBody& 
   const Model model(part, body.voxmap);
   const auto first_edge = static_cast<EntityNumber>(body.features.faces.size());
   const std::size_t bricks = model.bricks.brick.size();
-  std::vector<std::unique_ptr<RunOfSets>> runs(bricks);  // each at the place of its first brick
-  for_each_run(bricks, threads, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::unique_ptr<SetsOfChunk>> chunks(bricks);  // each at the index of its first brick
+  for_each_chunk(bricks, threads, [&](std::size_t begin, std::size_t end) {
     if (begin == end) return;
-    runs[begin] = std::make_unique<RunOfSets>();
-    BrickAssociation association(model, first_edge, *runs[begin]);
+    chunks[begin] = std::make_unique<SetsOfChunk>();
+    BrickAssociation association(model, first_edge, *chunks[begin]);
     for (std::size_t entry = begin; entry < end; ++entry) {
       const std::uint32_t block = body.voxmap.brick_block[model.bricks.brick[entry]];
       association.associate(entry, body.shell.features.data() + body.voxmap.first_surface[block][0]);
     }
   });
-  number_sets(runs, model, body);
+  number_sets(chunks, model, body);
   AssociationReport report;
-  for (const auto& run : runs) {
+  for (const auto& run : chunks) {
     if (!run) continue;
     report.stand_ins += run->stand_ins;
     report.without += run->without;

@@ -1,14 +1,13 @@
-// Which faces and edges of a part pass through which of its surface voxels.
+// Association of surface voxels with the faces and edges of the part that pass through them.
 //
 // Source: dissertation chapter 7 (association of voxels with b-rep features). A face passes through a voxel if a point
-// of it, of the precise surface within the precise bounds, lies in the voxel's closed box; an edge likewise. None is
-// missed and none invented, within 2^-21 of a voxel outward. What is not plane, cylinder, cone, sphere, torus, line,
-// circle or ellipse is known by its triangles and polyline, so right within the deflection of the tessellation.
+// of its precise surface, within its precise bounds, lies in the voxel's closed box; an edge likewise. The result is
+// exact to 2^-21 of a voxel outward. Freeform faces and edges are represented by their triangles and polylines; for
+// them the result is exact to the deflection of the tessellation.
 //
-// Surface voxels come from the triangles, so some hold no point of any face: the triangles pass through a corner of
-// the box and the faces, up to the deflection away, do not. Such a voxel gets the faces of its triangles (a STAND-IN):
-// the nearest precise surface is known there and a contact in it is a contact with that face. With the empty set the
-// answer would change to the voxel's own, by up to half a voxel, in the middle of a face. The report counts them.
+// Stand-ins. Surface voxels come from the triangles, so some hold no point of any face: the triangles pass through a
+// corner of the box, the faces (up to the deflection away) do not. Such a voxel gets the faces of its triangles. With
+// the empty set a contact there would not be recognized, in the middle of a face. The report counts stand-ins.
 #pragma once
 
 #include <string>
@@ -21,13 +20,13 @@ namespace verisim {
 struct AssociateOptions {
   std::size_t most_sets = FeatureSets::kMostSets;  ///< more is an Error(input)
   unsigned threads = 1;                            ///< same result for any number
-  const DeclaredFeatures* declared = nullptr;      ///< by hand; see there how they and the part's live together
+  const DeclaredFeatures* declared = nullptr;      ///< by a script; see declared_features.hpp
 };
 
 struct AssociationReport {
   std::uint32_t stand_ins = 0;    ///< voxels that no face or edge passes through, only triangles
   std::uint32_t without = 0;      ///< voxels with the empty set: only triangles that belong to no face
-  std::uint32_t loose_faces = 0;  ///< faces whose bounds do not close; their triangles take the bounds' place
+  std::uint32_t loose_faces = 0;  ///< faces whose bounds do not close; their triangles are used instead
 };
 
 /// Fills body.shell.features and body.features (the part's faces and edges, and the sets). Sets are numbered in the
@@ -39,13 +38,13 @@ struct AssociationReport {
 AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
                             VoxelBody& body);
 
-/// The set of the voxel at `slot` (block * 512 + cell, as contacts name it), behind the surface that of the surface
-/// voxel in front (slot_sets.hpp); 0 outside, or where nothing is associated.
+/// The set of the voxel at `slot` (block * 512 + cell, as in ContactList). Behind the surface: that of the surface
+/// voxel in front (slot_sets.hpp). 0 outside, or if association has not been run.
 [[nodiscard]] inline FeatureSetId feature_at(const VoxelBody& body, std::uint32_t slot) {
   return body.slot_sets.empty() ? FeatureSetId{0} : body.slot_sets[slot];
 }
 
-/// The set of the voxel that a pointshell point stands for; 0 where nothing is associated.
+/// The set of the surface voxel of a pointshell point; 0 if association has not been run.
 [[nodiscard]] inline FeatureSetId feature_of_point(const Pointshell& shell, std::uint32_t point) {
   if (shell.features.empty()) return 0;
   return shell.features[shell.voxel.empty() ? point : shell.voxel[point]];

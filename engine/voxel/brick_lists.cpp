@@ -74,7 +74,7 @@ GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map) {
   return result;
 }
 
-// Walks twice, first to count, so that the lists have their exact size and need no sorting.
+// Two passes, the first to count: the lists get their exact size and need no sorting.
 BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks, double margin) {
   VERISIM_ASSERT(is_not_negative(margin));
   for (const auto& triangle : *mesh.triangles) {

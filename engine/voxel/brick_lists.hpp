@@ -1,5 +1,5 @@
-// Which triangles pass through which brick. The only place where cost depends on the size of triangles: each is
-// followed down a hierarchy of cubes of 8^k voxels, so that work goes where its surface is and nowhere else.
+// Lists of the triangles that pass through each brick. Each triangle is refined down a hierarchy of cubes of 8^k
+// voxels, so the cost follows its area. Later stages do not depend on the size of triangles.
 #pragma once
 
 #include <cstdint>

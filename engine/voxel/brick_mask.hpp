@@ -13,6 +13,11 @@ using BrickMask = std::array<std::uint64_t, kBrickSide>;
 
 inline constexpr std::uint64_t kEveryByte = 0x0101010101010101;
 
+/// The cells of `more` too.
+inline void add(BrickMask& mask, const BrickMask& more) {
+  for (std::size_t z = 0; z < mask.size(); ++z) mask[z] |= more[z];
+}
+
 [[nodiscard]] inline bool any(const BrickMask& mask) {
   std::uint64_t bits = 0;
   for (const std::uint64_t word : mask) bits |= word;

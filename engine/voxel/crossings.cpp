@@ -14,9 +14,9 @@ struct Crossing {
   double x;  ///< where, within the triangle's chord on the line
 };
 
-/// Where the line along x at (y, z) crosses a triangle. Per edge, half-open in y and interpolated from its lower end,
-/// so that two triangles come to the same conclusion about the edge that they share: what the one misses the other has,
-/// and on a closed surface the sum is right even if the line runs through an edge, a corner or a triangle seen edge-on.
+/// The crossing of a triangle by the line along x at (y, z). Each edge is half-open in y and interpolated from its
+/// lower end, so two triangles decide alike about their common edge, and exactly one of them has the crossing. On a
+/// closed surface the sum is right even if the line passes through an edge, a corner or a triangle seen edge-on.
 std::optional<Crossing> cross(const std::array<Vector3d, 3>& corners, double y, double z) {
   int above = 0;  // edges that pass above z: toward +y count up, toward -y down
   std::array<Vector3d, 2> chord;

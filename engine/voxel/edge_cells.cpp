@@ -33,10 +33,6 @@ BrickMask part_in_brick(const CellRange& range, const Eigen::Vector3i& corner) {
   return mask;
 }
 
-void add(BrickMask& mask, const BrickMask& more) {
-  for (std::size_t z = 0; z < mask.size(); ++z) mask[z] |= more[z];
-}
-
 auto key(const EdgeCells& cells) {
   return std::tuple(cells.brick, cells.edge);
 }
@@ -71,7 +67,8 @@ class Walk {
   std::vector<EdgeCells> cells;
 
  private:
-  /// One of the bricks that the last pieces came by, or a new one. A curve that comes back later has two for a brick.
+  /// The record of a brick, one of the last few or a new one. A curve that returns to a brick later has two records for
+  /// it.
   EdgeCells& cells_of(std::uint32_t entry, std::uint32_t edge) {
     constexpr std::size_t kRemembered = 24;
     const std::size_t oldest = std::max(first_of_edge_, cells.size() - std::min(cells.size(), kRemembered));

@@ -1,4 +1,4 @@
-// Which voxels an edge may pass through, and which are near it: brick by brick, by following the curve.
+// The voxels that an edge may pass through and those near it, found brick by brick along the curve.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@ namespace verisim {
 
 /// One edge in one brick.
 struct EdgeCells {
-  std::uint32_t brick;     ///< where the brick stands among those with surface voxels
+  std::uint32_t brick;     ///< index among the bricks with surface voxels
   std::uint32_t edge;      ///< of the part
-  BrickMask candidates{};  ///< every voxel that the edge passes through, and a few more
-  BrickMask near{};        ///< every voxel whose centre is within the edge's distance of it, and a few more
+  BrickMask candidates{};  ///< a superset of the voxels that the edge passes through
+  BrickMask near{};        ///< a superset of the voxels whose centres are within the edge's distance
 };
 
 /// For every brick that holds a surface voxel, the edges that come near it, ascending.
 class EdgeLists {
  public:
-  /// @param entry_of_brick  a brick's place among those with surface voxels, or kNoSurface
-  /// @param distances       what is near to each edge [voxel]
+  /// @param entry_of_brick  a brick's index among those with surface voxels, or kNoSurface
+  /// @param distances       for each edge: how far `near` reaches [voxel]
   /// @pre a distance for each curve, finite and not negative; an entry for each brick
   /// About 0.1 us per voxel length of edge, more where `distances` are large.
   EdgeLists(const std::vector<GridCurve>& curves, const std::vector<double>& distances, const Eigen::Vector3i& bricks,

@@ -15,13 +15,6 @@ std::size_t hash_of(std::span<const EntityNumber> entities) {
   return static_cast<std::size_t>(hash_bytes(entities.data(), entities.size_bytes(), 0));
 }
 
-const NamedArray& table_called(const std::string& owner, const std::vector<NamedArray>& tables, const char* name) {
-  const auto found =
-      std::find_if(tables.begin(), tables.end(), [&](const NamedArray& table) { return table.name == name; });
-  if (found == tables.end()) fail(ErrorKind::input, "'{}': table '{}' is missing; the file is damaged", owner, name);
-  return *found;
-}
-
 }  // namespace
 
 FeatureSets::FeatureSets(std::string owner, std::size_t most)
@@ -72,33 +65,6 @@ void FeatureSets::grow() {
 std::size_t FeatureSets::memory_bytes() const {
   return begin_.capacity() * sizeof(std::uint32_t) + entities_.capacity() * sizeof(EntityNumber) +
          table_.capacity() * sizeof(FeatureSetId);
-}
-
-std::vector<NamedArray> FeatureSets::to_tables() const {
-  return {NamedArray::from<std::uint32_t>("feature_set_offsets", begin_, {begin_.size()}, "1",
-                                          "Where each set's entities begin; the last is the total"),
-          NamedArray::from<EntityNumber>("feature_set_entities", entities_, {entities_.size()}, "1",
-                                         "Entities of all sets, one after the other: faces, then edges")};
-}
-
-FeatureSets FeatureSets::from_tables(const std::string& owner, const std::vector<NamedArray>& tables,
-                                     std::size_t entity_count) {
-  const auto offsets = table_called(owner, tables, "feature_set_offsets").as<std::uint32_t>();
-  const auto entities = table_called(owner, tables, "feature_set_entities").as<EntityNumber>();
-  const auto require = [&](bool fits) {
-    if (!fits)
-      fail(ErrorKind::input, "'{}': its tables of feature sets do not fit together; the file is damaged", owner);
-  };
-  require(offsets.size() >= 2 && offsets.size() - 2 <= kMostSets && offsets.front() == 0 && offsets[1] == 0 &&
-          std::ranges::is_sorted(offsets) && offsets.back() == entities.size());
-  require(std::ranges::all_of(entities, [&](EntityNumber e) { return e < entity_count; }));
-  FeatureSets sets(owner);
-  for (std::size_t id = 1; id + 1 < offsets.size(); ++id) {
-    const std::span<const EntityNumber> set(entities.data() + offsets[id], offsets[id + 1] - offsets[id]);
-    require(std::ranges::adjacent_find(set, std::ranges::greater_equal{}) == set.end());
-    require(sets.intern(set) == id);
-  }
-  return sets;
 }
 
 }  // namespace verisim

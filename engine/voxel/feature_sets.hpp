@@ -1,8 +1,8 @@
-// Hash-consed sets of b-rep entities: each set that occurs in a part is stored once and known by a small number.
+// Interned (hash-consed) sets of b-rep entities: each set that occurs in a part is stored once and has a small number.
 //
 // Source: dissertation section 7.3 (feature sets of voxels, stored once; 12 bits of identity, here 16). A surface voxel
 // holds the number of the set of entities that pass through it, so two voxels of one face hold the same number, and
-// what a pair of numbers means can be remembered (memoized recognition).
+// recognition can be memoized per pair of numbers.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "engine/base/error.hpp"
-#include "engine/base/named_array.hpp"
 #include "engine/geometry/entity.hpp"
 
 namespace verisim {
@@ -28,8 +27,8 @@ class FeatureSets {
  public:
   static constexpr std::size_t kMostSets = 0xFFFF;  ///< that FeatureSetId can number, besides the empty set
 
-  /// @param owner  what errors call the body
-  /// @param most   how many sets may be stored besides the empty set, up to kMostSets
+  /// @param owner  the body's name in errors
+  /// @param most   largest number of sets besides the empty set, up to kMostSets
   /// @pre most <= kMostSets
   explicit FeatureSets(std::string owner = {}, std::size_t most = kMostSets);
 
@@ -52,12 +51,6 @@ class FeatureSets {
   [[nodiscard]] std::size_t size() const { return begin_.size() - 1; }
   [[nodiscard]] std::size_t memory_bytes() const;
 
-  /// The sets as a flat table of entities and one of offsets, and back. Numbers stay.
-  [[nodiscard]] std::vector<NamedArray> to_tables() const;
-  /// Throws Error(input) if the tables do not fit together or name an entity from `entity_count` on.
-  [[nodiscard]] static FeatureSets from_tables(const std::string& owner, const std::vector<NamedArray>& tables,
-                                               std::size_t entity_count);
-
  private:
   [[nodiscard]] std::size_t place_of(std::span<const EntityNumber> entities) const;
   void grow();
@@ -69,7 +62,7 @@ class FeatureSets {
   std::vector<FeatureSetId> table_;  // open addressing, linear probing; 0: free (the empty set is not in it)
 };
 
-/// What the voxels of one body refer to: its entities, in the order in which they are numbered, and the sets of them.
+/// The entities of one body, in the order of their numbers, and the sets of them to which voxels refer.
 struct BodyFeatures {
   std::vector<Face> faces;
   std::vector<Edge> edges;

@@ -5,13 +5,14 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 constexpr double kSameAngle = 1e-9;  // rad: an arc that closes to this is a whole ellipse
 
 /// Slabs: does the segment pq meet the closed box?
@@ -53,16 +54,18 @@ GridCurve::GridCurve(const Edge& edge, const Matrix3d& axes, const Vector3d& ori
     middle_sine_ = pinned::sin(middle);
     reach_ = pinned::cos(0.5 * (range_[1] - range_[0]));
   };
-  if (const auto* line = std::get_if<Line>(&edge.curve)) {
-    for (const double t : edge.t_range) points_.push_back(placed(line->point + t * line->direction));
-  } else if (const auto* circle = std::get_if<Circle>(&edge.curve)) {
-    set_arc(circle->center, circle->normal, circle->x_axis, circle->radius, circle->radius);
-  } else if (const auto* ellipse = std::get_if<Ellipse>(&edge.curve)) {
-    set_arc(ellipse->center, ellipse->normal, ellipse->x_axis, ellipse->major_radius, ellipse->minor_radius);
-  } else {
+  const auto set_polyline = [&] {
     for (const Vector3d& p : edge.polyline) points_.push_back(placed(p));
     if (points_.empty()) points_.push_back(Vector3d::Constant(-1));  // nowhere: outside every surface voxel
-  }
+  };
+  std::visit(
+      Overloaded{[&](const Line& c) {
+                   for (const double t : edge.t_range) points_.push_back(placed(c.point + t * c.direction));
+                 },
+                 [&](const Circle& c) { set_arc(c.center, c.normal, c.x_axis, c.radius, c.radius); },
+                 [&](const Ellipse& c) { set_arc(c.center, c.normal, c.x_axis, c.major_radius, c.minor_radius); },
+                 [&](const OtherCurve&) { set_polyline(); }},
+      edge.curve);
 }
 
 bool GridCurve::in_range(double cosine, double sine) const {

@@ -1,4 +1,5 @@
-// The curve of an edge in grid coordinates (unit: one voxel), and where it meets boxes and planes, in closed form.
+// The curve of an edge in grid coordinates (unit: one voxel) and its intersections with boxes and planes, in closed
+// form.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +19,8 @@ struct GridBox {
   [[nodiscard]] bool contains(const Vector3d& p) const { return ((p - center).array().abs() <= half).all(); }
 };
 
-/// A point where a curve meets a plane. Not certain: an end of the curve is as near, or the curve touches the plane
-/// without crossing it, so that rounding decides whether it crosses.
+/// A point where a curve meets a plane. Uncertain if rounding decides whether it crosses: an end of the curve is
+/// equally near, or the curve touches the plane without crossing it.
 struct PlaneCrossing {
   Vector3d point;
   bool certain;
@@ -28,14 +29,14 @@ struct PlaneCrossing {
 /// One bounded curve: straight pieces through points, or an arc p(t) = center + cos t a + sin t b.
 class GridCurve {
  public:
-  /// Places an edge's curve in a frame: p -> axes (p - origin) * scale. An edge of another kind is its polyline.
+  /// Transforms an edge's curve: p -> axes (p - origin) * scale. A freeform edge is its polyline.
   /// @pre scale is finite and above 0; axes and origin are finite
   GridCurve(const Edge& edge, const Matrix3d& axes, const Vector3d& origin, double scale);
 
-  /// Does the curve pass through the closed box? 10 ns for a line, 100 ns for an arc.
+  /// True if the curve passes through the closed box. 10 ns for a line, 100 ns for an arc.
   [[nodiscard]] bool passes(const GridBox& box) const;
 
-  /// Adds the points with normal . p = offset to `found`. Whatever is decided by less than `epsilon` is not certain.
+  /// Adds the points with normal . p = offset to `found`. A decision by less than `epsilon` is uncertain.
   void cross(const Vector3d& normal, double offset, double epsilon, std::vector<PlaneCrossing>& found) const;
 
   /// Smallest and largest normal . p of the curve, for curves that are arcs: of the whole ellipse.

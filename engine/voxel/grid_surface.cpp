@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/pinned_math.hpp"
-
 namespace verisim {
 
 namespace {
@@ -15,19 +13,14 @@ constexpr double kSmallestHalf = 0x1p-22;         // boxes are not halved furthe
 constexpr double kOffSurface = 1e-6;              // voxel: rounding stays far below
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Matrix3d rows(const Vector3d& x, const Vector3d& z) {
+Matrix3d rows(const AnalyticSurface& s) {
   Matrix3d m;
-  m << x.transpose(), z.cross(x).transpose(), z.transpose();
+  m << s.x_axis().transpose(), s.y_axis().transpose(), s.axis().transpose();
   return m;
 }
 
 double from_axis(const Vector3d& local) {
   return std::sqrt(local.x() * local.x() + local.y() * local.y());
-}
-
-/// Unit vector away from the axis; on it, x.
-Vector3d radial(const Vector3d& local, double rho) {
-  return rho > 0 ? Vector3d(local.x() / rho, local.y() / rho, 0) : Vector3d(Vector3d::UnitX());
 }
 
 template <class Visit>
@@ -53,118 +46,51 @@ void for_each_box_edge(const GridBox& box, Visit visit) {
 
 }  // namespace
 
-GridSurface::GridSurface(const Face& face, const Vector3d& origin, double scale) {
-  const Surface& surface = face.surface;
-  const auto place = [&](Shape shape, const Vector3d& point, const Vector3d& x, const Vector3d& z) {
-    shape_ = shape;
-    origin_ = scale * (point - origin);
-    axes_ = rows(x, z);
-  };
-  if (const auto* plane = std::get_if<Plane>(&surface)) {
-    place(Shape::plane, plane->point, plane->x_axis, plane->normal);
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&surface)) {
-    place(Shape::cylinder, cylinder->point, cylinder->x_axis, cylinder->direction);
-    radius_ = scale * cylinder->radius;
-  } else if (const auto* cone = std::get_if<Cone>(&surface)) {
-    place(Shape::cone, cone->point, cone->x_axis, cone->direction);
-    radius_ = scale * cone->radius;
-    sine_ = pinned::sin(cone->half_angle);
-    cosine_ = pinned::cos(cone->half_angle);
-  } else if (const auto* sphere = std::get_if<Sphere>(&surface)) {
-    place(Shape::sphere, sphere->center, sphere->x_axis, sphere->direction);
-    radius_ = scale * sphere->radius;
-  } else if (const auto* torus = std::get_if<Torus>(&surface)) {
-    place(Shape::torus, torus->center, torus->x_axis, torus->direction);
-    radius_ = scale * torus->major_radius;
-    minor_ = scale * torus->minor_radius;
-    const double middle = 0.5 * (face.v_range[0] + face.v_range[1]);
-    if (radius_ + minor_ * pinned::cos(middle) < 0) radius_ = -radius_;
-  }
-  plane_extent_ = axes_.row(2).cwiseAbs().sum();
-  const bool is_finite = origin_.allFinite() && axes_.allFinite() && std::isfinite(radius_ + minor_ + sine_ + cosine_);
-  const bool fits =
-      (radius_ >= 0 || shape_ == Shape::torus) && minor_ >= 0 && (shape_ != Shape::cone || (sine_ > 0 && cosine_ > 0));
-  if (!is_finite || !fits) shape_ = Shape::other;
+std::optional<GridSurface> GridSurface::from(const Face& face, const Vector3d& origin, double scale) {
+  const std::optional<AnalyticSurface> surface = AnalyticSurface::from(face);
+  if (!surface) return std::nullopt;
+  return GridSurface(surface->in_grid(origin, scale));
 }
+
+GridSurface::GridSurface(const AnalyticSurface& placed)
+    : surface_(placed), origin_(placed.point()), axes_(rows(placed)), plane_extent_(axes_.row(2).cwiseAbs().sum()) {}
 
 double GridSurface::value(const Vector3d& local) const {
-  switch (shape_) {
-    case Shape::plane:
-      return local.z();
-    case Shape::cylinder:
-      return from_axis(local) - radius_;
-    case Shape::cone:
-      return cosine_ * (from_axis(local) - radius_) - sine_ * local.z();
-    case Shape::sphere:
-      return local.norm() - radius_;
-    case Shape::torus: {
-      const double out = from_axis(local) - radius_;
-      return std::sqrt(out * out + local.z() * local.z()) - minor_;
-    }
-    case Shape::other:
-      break;
-  }
-  return kInfinity;
+  return meridian().distance(from_axis(local), local.z());
 }
 
-Vector3d GridSurface::gradient(const Vector3d& local) const {
-  const double rho = from_axis(local);
-  switch (shape_) {
-    case Shape::cylinder:
-      return radial(local, rho);
-    case Shape::cone:
-      return cosine_ * radial(local, rho) - sine_ * Vector3d::UnitZ();
-    case Shape::sphere: {
-      const double length = local.norm();
-      return length > 0 ? Vector3d(local / length) : Vector3d(Vector3d::UnitX());
-    }
-    case Shape::torus: {
-      const double out = rho - radius_;
-      const double from_core = std::sqrt(out * out + local.z() * local.z());
-      if (from_core == 0) return radial(local, rho);
-      return (out * radial(local, rho) + local.z() * Vector3d::UnitZ()) / from_core;
-    }
-    case Shape::plane:
-    case Shape::other:
-      break;
-  }
-  return Vector3d::UnitZ();
-}
-
-/// Of the second derivative along any direction, within `distance` of the point.
-double GridSurface::curvature_bound(const Vector3d& local, double distance) const {
-  const auto inverse = [&](double radius) { return radius > distance ? 1 / (radius - distance) : kInfinity; };
-  switch (shape_) {
-    case Shape::cylinder:
-      return inverse(from_axis(local));
-    case Shape::cone:
-      return cosine_ * inverse(from_axis(local));
-    case Shape::sphere:
-      return inverse(local.norm());
-    case Shape::torus:
-      return std::max(inverse(value(local) + minor_), inverse(from_axis(local)));
-    case Shape::plane:
-    case Shape::other:
-      break;
-  }
-  return 0;
+/// Where slope and curvature in a box's middle tell alone whether the surface passes. @param at  the middle's
+std::optional<bool> GridSurface::touches_by_slope(const Vector3d& local, double rho, const MeridianAt& at,
+                                                  double half) const {
+  const double reach = kDiagonal * half;
+  const double curvature = meridian().curvature_bound(rho, local.z(), reach);
+  if (!(curvature < kInfinity)) return std::nullopt;
+  const double bend = 0.5 * curvature * reach * reach;
+  const double out = rho > 0 ? at.out / (at.length * rho) : 0;  // on the axis: of a sphere, whose slope is along it
+  const Vector3d slope = axes_.transpose() * Vector3d(out * local.x(), out * local.y(), at.up / at.length);
+  const double change = half * slope.cwiseAbs().sum();
+  if (std::abs(at.distance) > change + bend) return false;
+  if (std::abs(at.distance) <= change - bend) return true;
+  return std::nullopt;
 }
 
 bool GridSurface::touches(const GridBox& box) const {
   const Vector3d local = to_local(box.center);
-  const double here = value(local);
-  if (shape_ == Shape::plane) return std::abs(here) <= box.half * plane_extent_;
-  const double reach = kDiagonal * box.half;
-  if (!(std::abs(here) <= reach)) return false;  // also for `other`
-  const double bend = 0.5 * curvature_bound(local, reach) * reach * reach;
-  if (bend < kInfinity) {
-    const Vector3d slope = axes_.transpose() * gradient(local);
-    const double change = box.half * slope.cwiseAbs().sum();
-    if (std::abs(here) > change + bend) return false;
-    if (std::abs(here) <= change - bend) return true;
+  if (kind() == SurfaceKind::plane) return std::abs(local.z()) <= box.half * plane_extent_;
+  const double rho = from_axis(local);
+  const MeridianAt at = meridian().at(rho, local.z());
+  if (std::abs(at.distance) > kDiagonal * box.half) return false;
+  if (const std::optional<bool> touches = touches_by_slope(local, rho, at, box.half)) return *touches;
+  switch (kind()) {
+    case SurfaceKind::plane:
+    case SurfaceKind::cylinder:
+    case SurfaceKind::cone:
+      return convex_touches(box);
+    case SurfaceKind::sphere:
+      return sphere_touches(box);
+    case SurfaceKind::torus:
+      break;
   }
-  if (shape_ == Shape::sphere) return sphere_touches(box);
-  if (shape_ != Shape::torus) return convex_touches(box);
   std::array<bool, 2> signs = {false, false};
   return torus_touches(box, signs);
 }
@@ -173,7 +99,7 @@ bool GridSurface::sphere_touches(const GridBox& box) const {
   const Vector3d arm = (box.center - origin_).cwiseAbs();
   const double nearest = (arm.array() - box.half).max(0).matrix().norm();
   const double farthest = (arm.array() + box.half).matrix().norm();
-  return nearest <= radius_ && radius_ <= farthest;
+  return nearest <= meridian().radius && meridian().radius <= farthest;
 }
 
 /// Smallest value of a cylinder's or cone's function on the segment local + t step, |t| <= half. With w the derivative
@@ -183,7 +109,7 @@ double GridSurface::lowest_on_line(const Vector3d& local, const Vector3d& step, 
   const double b = local.x() * step.x() + local.y() * step.y();
   const auto at = [&](double t) { return value(local + t * step); };
   double lowest = std::min(at(-half), at(half));
-  const double pull = sine_ / cosine_ * step.z();
+  const double pull = meridian().tangent * step.z();
   const double left = a - pull * pull;
   if (left > 0) {
     const double c = local.x() * local.x() + local.y() * local.y();
@@ -228,18 +154,12 @@ bool GridSurface::convex_touches(const GridBox& box) const {
 /// `signs`: a value below zero, one above, has been seen in the box that was asked for first.
 bool GridSurface::torus_touches(const GridBox& box, std::array<bool, 2>& signs) const {
   const Vector3d local = to_local(box.center);
-  const double here = value(local);
-  signs[here < 0 ? 0 : 1] = true;
+  const double rho = from_axis(local);
+  const MeridianAt at = meridian().at(rho, local.z());
+  signs[at.distance < 0 ? 0 : 1] = true;
   if (signs[0] && signs[1]) return true;
-  const double reach = kDiagonal * box.half;
-  if (std::abs(here) > reach) return false;
-  const double bend = 0.5 * curvature_bound(local, reach) * reach * reach;
-  if (bend < kInfinity) {
-    const Vector3d slope = axes_.transpose() * gradient(local);
-    const double change = box.half * slope.cwiseAbs().sum();
-    if (std::abs(here) > change + bend) return false;
-    if (std::abs(here) <= change - bend) return true;
-  }
+  if (std::abs(at.distance) > kDiagonal * box.half) return false;
+  if (const std::optional<bool> decided = touches_by_slope(local, rho, at, box.half)) return *decided;
   if (box.half < kSmallestHalf) return true;
   bool touches = false;
   for_each_corner({box.center, 0.5 * box.half}, [&](const Vector3d& center) {
@@ -248,37 +168,23 @@ bool GridSurface::torus_touches(const GridBox& box, std::array<bool, 2>& signs) 
   return touches;
 }
 
-/// A cone's height where it meets its axis; of a torus that meets itself, half the distance of the two places.
-double GridSurface::axis_meeting() const {
-  if (shape_ == Shape::cone) return -radius_ * cosine_ / sine_;
-  return std::sqrt(std::max(minor_ * minor_ - radius_ * radius_, 0.0));
-}
-
 bool GridSurface::is_one_sheet(const Vector3d& center, double distance) const {
-  switch (shape_) {
-    case Shape::plane:
+  const auto from_its_axis = [&] { return from_axis(to_local(center)); };
+  const double radius = meridian().radius, ring = meridian().ring;
+  switch (kind()) {
+    case SurfaceKind::plane:
       return true;
-    case Shape::cylinder:
-    case Shape::sphere:
-      return radius_ > distance;
-    case Shape::cone:
-      return from_axis(to_local(center)) > 3 * distance;
-    case Shape::torus:
-      if (minor_ >= std::abs(radius_) && from_axis(to_local(center)) <= 3 * distance) return false;  // near its tips
-      return minor_ > distance && (minor_ >= std::abs(radius_) || radius_ - minor_ > distance);
-    case Shape::other:
+    case SurfaceKind::cylinder:
+    case SurfaceKind::sphere:
+      return radius > distance;
+    case SurfaceKind::cone:
+      return from_its_axis() > 3 * distance;
+    case SurfaceKind::torus:
       break;
   }
-  return false;
-}
-
-Vector3d GridSurface::projected(const Vector3d& local) const {
-  Vector3d foot = local - value(local) * gradient(local);
-  if (shape_ == Shape::cone && foot.z() < axis_meeting()) return {0, 0, axis_meeting()};
-  if (shape_ == Shape::torus && std::abs(value(foot)) > kOffSurface) {  // beyond the axis, where it meets itself
-    return {0, 0, local.z() < 0 ? -axis_meeting() : axis_meeting()};
-  }
-  return foot;
+  const bool meets_itself = radius >= std::abs(ring);
+  if (meets_itself && from_its_axis() <= 3 * distance) return false;  // near its tips
+  return radius > distance && (meets_itself || ring - radius > distance);
 }
 
 // --- points in every piece ------------------------------------------------------------------------------------------
@@ -307,23 +213,31 @@ void GridSurface::add_roots(const GridBox& box, const Vector3d& start, int axis,
   middle[axis] = box.center[axis];
   const Vector3d local = to_local(middle);
   const Vector3d step = axes_.col(axis);
-  if (shape_ == Shape::torus) return add_torus_roots(local, step, box.half, probes);
   const double flat_a = step.x() * step.x() + step.y() * step.y();
   const double flat_b = step.x() * local.x() + step.y() * local.y();
   const double flat_c = local.x() * local.x() + local.y() * local.y();
   double a = 0, b = 0, c = 0;  // a t^2 + 2 b t + c = 0
-  if (shape_ == Shape::plane) {
-    b = 0.5 * step.z();
-    c = local.z();
-  } else if (shape_ == Shape::cylinder) {
-    a = flat_a, b = flat_b, c = flat_c - radius_ * radius_;
-  } else if (shape_ == Shape::sphere) {
-    a = 1, b = step.dot(local), c = local.squaredNorm() - radius_ * radius_;
-  } else {
-    const double width = cosine_ * radius_ + sine_ * local.z(), widening = sine_ * step.z();
-    a = cosine_ * cosine_ * flat_a - widening * widening;
-    b = cosine_ * cosine_ * flat_b - widening * width;
-    c = cosine_ * cosine_ * flat_c - width * width;
+  const double radius = meridian().radius, cosine = meridian().cosine, sine = meridian().sine;
+  switch (kind()) {
+    case SurfaceKind::plane:
+      b = 0.5 * step.z();
+      c = local.z();
+      break;
+    case SurfaceKind::cylinder:
+      a = flat_a, b = flat_b, c = flat_c - radius * radius;
+      break;
+    case SurfaceKind::sphere:
+      a = 1, b = step.dot(local), c = local.squaredNorm() - radius * radius;
+      break;
+    case SurfaceKind::cone: {
+      const double width = cosine * radius + sine * local.z(), widening = sine * step.z();
+      a = cosine * cosine * flat_a - widening * widening;
+      b = cosine * cosine * flat_b - widening * width;
+      c = cosine * cosine * flat_c - width * width;
+      break;
+    }
+    case SurfaceKind::torus:
+      return add_torus_roots(local, step, box.half, probes);
   }
   const double under = b * b - a * c;
   if (under < 0) return;
@@ -331,7 +245,7 @@ void GridSurface::add_roots(const GridBox& box, const Vector3d& start, int axis,
   for (const double t : {q / a, c / q}) {  // of a line along the surface: neither is a number
     if (!(std::abs(t) <= box.half)) continue;
     const Vector3d p = local + t * step;
-    const bool on_other_nappe = shape_ == Shape::cone && cosine_ * radius_ + sine_ * p.z() < 0;
+    const bool on_other_nappe = kind() == SurfaceKind::cone && cosine * radius + sine * p.z() < 0;
     if (!on_other_nappe) probes.push_back(p);
   }
 }
@@ -341,41 +255,50 @@ void GridSurface::add_roots(const GridBox& box, const Vector3d& start, int axis,
 void GridSurface::add_extremes(const GridBox& box, std::vector<Vector3d>& probes) const {
   const auto add = [&](const Vector3d& local) {
     const bool is_on = std::abs(value(local)) <= kOffSurface;
-    if (is_on && box.contains(origin_ + axes_.transpose() * local)) probes.push_back(local);
+    if (is_on && box.contains(to_grid(local))) probes.push_back(local);
   };
-  if (shape_ == Shape::cylinder || shape_ == Shape::cone) {
+  const auto add_around_axis = [&] {
     for_each_axis_entry(box, [&](const Vector3d& p, int axis) {
       add_roots(box, p, (axis + 1) % 3, probes);
       add_roots(box, p, (axis + 2) % 3, probes);
     });
-    if (shape_ == Shape::cone) add({0, 0, axis_meeting()});
-    return;
+  };
+  const double radius = meridian().radius, ring = meridian().ring;
+  switch (kind()) {
+    case SurfaceKind::plane:
+      return;
+    case SurfaceKind::cylinder:
+      return add_around_axis();
+    case SurfaceKind::cone:
+      add_around_axis();
+      return add({0, 0, meridian().apex()});
+    case SurfaceKind::sphere:
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const double side : {radius, -radius}) add(side * axes_.col(axis));
+      }
+      return;
+    case SurfaceKind::torus:
+      break;
   }
-  if (shape_ == Shape::torus && minor_ > std::abs(radius_)) {
-    add({0, 0, axis_meeting()});
-    add({0, 0, -axis_meeting()});
+  if (radius > std::abs(ring)) {
+    for (const double h : {meridian().apex(), -meridian().apex()}) add({0, 0, h});
   }
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d direction = axes_.col(axis);
-    if (shape_ == Shape::sphere) {
-      add(radius_ * direction);
-      add(-radius_ * direction);
-    } else if (shape_ == Shape::torus) {
-      const Vector3d out = radius_ * radial(direction, from_axis(direction));
-      for (const double core : {-1.0, 1.0}) {
-        add(core * out + minor_ * direction);
-        add(core * out - minor_ * direction);
-      }
+    const double rho = from_axis(direction);
+    const Vector3d out = rho > 0 ? Vector3d(direction.x() / rho, direction.y() / rho, 0) : Vector3d(Vector3d::UnitX());
+    for (const double core : {-ring, ring}) {
+      for (const double side : {radius, -radius}) add(core * out + side * direction);
     }
   }
 }
 
 void GridSurface::add_probes(const GridBox& box, std::vector<Vector3d>& probes) const {
-  const Vector3d nearest = projected(to_local(box.center));
-  if (box.contains(origin_ + axes_.transpose() * nearest)) probes.push_back(nearest);
-  if (shape_ == Shape::plane && !probes.empty()) return;  // a plane cuts out one piece
+  const Vector3d nearest = surface_.foot(box.center);
+  if (box.contains(nearest)) probes.push_back(to_local(nearest));
+  if (kind() == SurfaceKind::plane && !probes.empty()) return;  // a plane cuts out one piece
   for_each_box_edge(box, [&](const Vector3d& middle, int axis) { add_roots(box, middle, axis, probes); });
-  if (shape_ != Shape::plane) add_extremes(box, probes);
+  add_extremes(box, probes);
 }
 
 }  // namespace verisim

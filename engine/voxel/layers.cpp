@@ -45,7 +45,7 @@ struct Near {
   int begin, end;
 };
 
-/// Do any cells of the neighbour at (dx, dy, dz) lie within the band of the brick in the middle?
+/// True if any cells of the neighbour at (dx, dy, dz) lie within the band of the brick in the middle.
 bool reaches(const BrickMask& cells, int dx, int dy, int dz) {
   const Near x(dx), y(dy), z(dz);
   const std::uint64_t row = (1U << x.end) - (1U << x.begin);
@@ -118,8 +118,8 @@ void write_layers(Window& window, const BrickMask& inside, Layer* layers) {
   }
 }
 
-/// Layers of blocks one after the other. Along the flat faces of made things the same surroundings come again and
-/// again, so the last few are remembered: twice as fast there, a twentieth slower elsewhere.
+/// Layers of blocks one after the other, with a small cache. Along flat faces the same surroundings recur: twice as
+/// fast there, 5 % slower elsewhere.
 class LayerWriter {
  public:
   void write(const Window& window, const BrickMask& inside, Layer* layers) {
@@ -204,7 +204,7 @@ void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t b
   map.layers.resize(blocks * kBrickCells);
   std::fill_n(map.layers.begin(), kBrickCells, kBeyond);
   std::fill_n(map.layers.begin() + kBrickCells, kBrickCells, static_cast<Layer>(-kBeyond));
-  for_each_run(blocks - 2, threads, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(blocks - 2, threads, [&](std::size_t begin, std::size_t end) {
     LayerWriter writer;
     for (std::size_t block = begin + 2; block < end + 2; ++block) {
       const std::size_t brick = brick_of_block[block];
@@ -218,7 +218,7 @@ void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t b
 }
 
 // Chebyshev distance by two sweeps over the 13 neighbours that come before, and the 13 that come after: exact for this
-// metric, since a shortest way of king's moves can be ordered that way.
+// metric, since the moves of a shortest path can be ordered that way.
 void fill_clearance(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map) {
   VERISIM_ASSERT(sides.brick.size() == surface.entry.size());
   VERISIM_ASSERT(surface.entry.size() == static_cast<std::size_t>(surface.bricks.cast<std::int64_t>().prod()));

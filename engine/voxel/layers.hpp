@@ -9,7 +9,7 @@ namespace verisim {
 // Of all three: @pre `sides` is what find_sides says of `surface`, `map` what assign_blocks made of both.
 
 /// Gives a block to every brick within kBand of a surface voxel, in brick order, and kOutsideBlock or kInsideBlock to
-/// the others. Fills brick_block. @returns the number of blocks, the two shared ones included
+/// the others. Fills brick_block. @returns the number of blocks, including these two
 [[nodiscard]] std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map);
 
 /// Fills layers, surface_mask, first_surface and surface_count. About 1 us per block.

@@ -24,7 +24,7 @@ double rounded_up(double size, int digits) {
   return std::ceil(size / unit * (1 - 0x1p-40)) * unit;
 }
 
-/// What people use: a fiftieth of the part, to one digit, in the script's own words.
+/// A usual voxel size: a fiftieth of the part, to one digit, as a script would write it.
 std::string usual_size(double longest) {
   return fmt::format("mm({:.4g})", 1000 * rounded_up(longest / 50, 1));
 }

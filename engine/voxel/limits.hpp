@@ -1,4 +1,4 @@
-// What can be voxelized, and how many bytes it will take. Refusals come from here.
+// Limits of voxelization: checks of the input, and the memory that the result will take.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@ namespace verisim {
 namespace {
 
 constexpr double kCancelled = 0x1p-10;      // |sum| / area below which opposite faces count as cancelling
-constexpr double kSameDirection = 0x1p-30;  // distance of unit normals that only rounding tells apart
+constexpr double kSameDirection = 0x1p-30;  // distance of unit normals that differ by rounding only
 
 bool same_direction(const Vector3d& a, const Vector3d& b) {
   return (a - b).cwiseAbs().maxCoeff() < kSameDirection;
@@ -75,7 +75,7 @@ void BrickNormals::load(std::span<const std::uint32_t> triangles, const Eigen::V
     const auto& [a, b, c] = facet.corners;
     const Vector3d outward = (b - a).cross(c - a);
     const double length = outward.norm();
-    if (!(length > 0)) continue;  // no area, no say
+    if (!(length > 0)) continue;  // no area: no weight
     facet.inward = outward / -length;
     facets_.push_back(facet);
   }

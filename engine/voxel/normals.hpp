@@ -1,7 +1,7 @@
 // Inward normals of surface voxels: the mean of the faces that pass through a voxel, weighted by their area in it.
 //
-// Areas are those within the voxel's box grown by kCandidateMargin, so that whatever touches the voxel (a face in its
-// wall, an edge, a corner) has one. The sum follows the shape: cutting triangles adds up to the same.
+// Areas are those within the voxel's box grown by kCandidateMargin, so that a face that only touches the voxel (in its
+// wall, with an edge or a corner) has one. The sum follows the shape: divided triangles add up to the same.
 #pragma once
 
 #include "engine/voxel/surface.hpp"
@@ -12,7 +12,7 @@ namespace verisim {
 ///
 /// Where the sum cancels (a wall thinner than a voxel; shorter than 2^-10 of the whole area) the direction with the
 /// largest area decides, of equal ones the lexicographically smallest inward normal. Where only triangles of zero area
-/// touch, the normal is +z: nothing is known of it.
+/// touch, the normal is unknown and set to +z.
 class BrickNormals {
  public:
   explicit BrickNormals(const GridMesh& mesh) : mesh_(mesh) {}

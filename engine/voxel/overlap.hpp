@@ -1,11 +1,11 @@
-// Does a triangle touch a box: one box, or 8 x 8 x 8 of them at once. Grid coordinates (unit: one voxel).
+// Overlap test of a triangle and a box: one box, or 8 x 8 x 8 of them at once. Grid coordinates (unit: one voxel).
 //
 // Source: separating axes of triangle and box (Akenine-Möller 2001): three box axes, the triangle's normal, nine
 // products of an edge and a box axis. Each of the nine lies in a coordinate plane, so for a lattice of boxes they are
 // three flat 8 x 8 patterns, and the 512 answers are the patterns' product.
 //
-// On every axis all three corners are projected. Then each axis, however badly rounded (the normal of a sliver), is a
-// true axis: it may fail to separate, but it never separates what touches.
+// All three corners are projected on every axis. So an axis may be rounded badly (the normal of a sliver): it may fail
+// to separate, but it never separates a triangle from a box that it touches.
 #pragma once
 
 #include "engine/base/pose.hpp"
@@ -14,7 +14,7 @@
 namespace verisim {
 
 /// Outward tolerance of the overlap test relative to a box's half side. Far above the rounding of grid coordinates
-/// (below 2^-30 for a million voxels along an axis), far below anything that a voxel can tell.
+/// (below 2^-30 for a million voxels along an axis), far below the resolution of a voxel.
 inline constexpr double kTouchTolerance = 0x1p-20;
 
 /// Boxes that only gather candidates are grown by this much [voxel], so that every finer test finds its triangles

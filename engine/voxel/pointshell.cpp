@@ -49,7 +49,7 @@ Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const 
   shell.reference = reference;
   resize(shell, map.surface_count);
   shell.clusters.resize(surface.brick.size());
-  for_each_run(surface.brick.size(), threads, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(surface.brick.size(), threads, [&](std::size_t begin, std::size_t end) {
     BrickNormals normals(mesh);
     for (std::size_t entry = begin; entry < end; ++entry) {
       const std::size_t brick = surface.brick[entry];
@@ -72,7 +72,7 @@ Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const 
 
 namespace {
 
-/// A point as the thinning sees it.
+/// A point's data for thinning.
 struct Candidate {
   Eigen::Vector3i cube;
   int direction;    ///< 0..5: axis of the largest component of the normal, and its sign
@@ -92,7 +92,7 @@ int main_direction(const Vector3f& n) {
 Candidate candidate_of(const Pointshell& shell, const Voxmap& map, double spacing, std::uint32_t i) {
   const Vector3d p = (point(shell, i).cast<double>() + shell.reference - map.origin) / spacing;
   const Vector3d corner = p.array().floor();
-  // A lattice of voxel centres has many points that are equally far but for rounding; they shall count as equal.
+  // In a lattice of voxel centres many points are equally far, up to rounding. They count as equal.
   const double distance = std::round((p - corner - Vector3d::Constant(0.5)).squaredNorm() * 0x1p20);
   return {corner.cast<int>(), main_direction({shell.nx[i], shell.ny[i], shell.nz[i]}), distance, i};
 }

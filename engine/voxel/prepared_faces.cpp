@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/overloaded.hpp"
+
 namespace verisim {
 
 namespace {
@@ -50,11 +52,11 @@ double triangle_deflection(const GridSurface& surface, const std::array<Vector3d
 
 /// The largest distance of an edge's polyline from its curve [m]: chord^2 / 8 times the largest curvature.
 double edge_deflection(const Edge& edge) {
-  double curvature = 0;
-  if (const auto* circle = std::get_if<Circle>(&edge.curve)) curvature = 1 / circle->radius;
-  if (const auto* ellipse = std::get_if<Ellipse>(&edge.curve)) {
-    curvature = ellipse->major_radius / (ellipse->minor_radius * ellipse->minor_radius);
-  }
+  const double curvature =
+      std::visit(Overloaded{[](const Line&) { return 0.0; }, [](const Circle& c) { return 1 / c.radius; },
+                            [](const Ellipse& c) { return c.major_radius / (c.minor_radius * c.minor_radius); },
+                            [](const OtherCurve&) { return 0.0; }},
+                 edge.curve);
   double farthest = 0;
   if (!std::isfinite(curvature)) return farthest;
   for (std::size_t i = 1; i < edge.polyline.size(); ++i) {
@@ -78,7 +80,7 @@ class Samples {
   [[nodiscard]] std::vector<Vector3d> find(double deflection) const {
     std::vector<Vector3d> samples = inside_triangles(4 * deflection);
     if (samples.empty()) samples = on_shared_sides();
-    for (Vector3d& p : samples) p = surface_.projected(surface_.to_local(p));
+    for (Vector3d& p : samples) p = surface_.to_local(surface_.foot(p));
     return samples;
   }
 
@@ -155,8 +157,9 @@ class Preparation {
   [[nodiscard]] PreparedFace prepare(std::size_t index) const {
     const Face& face = part_.faces[index];
     PreparedFace result;
-    result.surface = std::make_unique<GridSurface>(face, map_.origin, scale_);
-    if (result.surface->shape() == GridSurface::Shape::other) return by_triangles(std::move(result), false);
+    const std::optional<GridSurface> surface = GridSurface::from(face, map_.origin, scale_);
+    if (!surface) return by_triangles(std::move(result), false);
+    result.surface = std::make_unique<GridSurface>(*surface);
     const double deflection = deflection_of(index, *result.surface);
     result.deflection = kSafety * deflection + kCandidateMargin;
     if (!(result.deflection < kMostDeflection)) return by_triangles(std::move(result), true);

@@ -16,8 +16,8 @@ namespace verisim {
 inline constexpr double kBoxHalf = 0.5 * (1 + kTouchTolerance);
 
 struct PreparedFace {
-  std::unique_ptr<const GridSurface> surface;
-  std::unique_ptr<const FaceTrim> trim;  ///< none: the face is known by its triangles
+  std::unique_ptr<const GridSurface> surface;  ///< none: it has no equation
+  std::unique_ptr<const FaceTrim> trim;        ///< none: the face is known by its triangles
   double deflection = 0;  ///< no point of the face is farther from its triangles [voxel], nor they from it
   double nearness = 0;    ///< bounds that are farther from a voxel's centre than this cannot matter to it
   bool is_loose = false;  ///< its surface is known, but its bounds are of no use

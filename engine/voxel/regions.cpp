@@ -27,7 +27,7 @@ BrickMask first_region(const BrickMask& free) {
   }
 }
 
-/// Do the cells of `a` at its upper wall along `axis` meet cells of `b` at its lower wall?
+/// True if cells of `a` at its upper wall along `axis` touch cells of `b` at its lower wall.
 bool meet(const BrickMask& a, const BrickMask& b, int axis) {
   if (axis == 2) return (a[7] & b[0]) != 0;
   const std::uint64_t lower_wall = axis == 0 ? kEveryByte : 0xFF;

@@ -1,17 +1,16 @@
 // Inside or outside: connected regions of voxels that no triangle touches, each classified once by its winding number.
 //
-// Two untouched voxels that share a face, an edge or a corner are on the same side: on the segment between their
-// centres a surface would pass through one of the two closed boxes. So one winding number decides a region. It is
-// counted from a voxel to the nearest untouched voxel with smaller x, whose region comes earlier in raster order and is
-// known; the segment between them crosses surface voxels only, so the cost of a region is local, however many there
-// are.
+// Two adjacent untouched voxels (by a face, an edge or a corner) are on the same side: a surface between their centres
+// would touch one of the two closed boxes. So one winding number decides a region. It is counted along the segment from
+// a voxel to the nearest untouched voxel with smaller x. That voxel's region comes earlier in raster order and is
+// known. The segment crosses surface voxels only, so the cost of a region is local.
 #pragma once
 
 #include "engine/voxel/surface.hpp"
 
 namespace verisim {
 
-/// Which voxels are in the material. Inside: the winding number is positive.
+/// The voxels in the material: those with a positive winding number.
 struct Sides {
   std::vector<BrickMask>
       inside;  // (surface bricks)  -  as SurfaceVoxels::brick: inside cells; not surface, not outside

@@ -40,8 +40,7 @@ struct Step {
   int x, y, z;
 };
 
-/// The 26 neighbours: those that share a face, then those that share an edge, then a corner; each in the order of z, y,
-/// x.
+/// The 26 neighbours: by face, then by edge, then by corner; each group in the order of z, y, x.
 constexpr std::array<std::size_t, 4> kClassEnd = {0, 6, 18, 26};
 std::array<Step, 26> nearest_first() {
   std::array<Step, 26> steps{};
@@ -54,7 +53,7 @@ std::array<Step, 26> nearest_first() {
   return steps;
 }
 
-/// One layer after the other takes over from the layer before, which is complete.
+/// Each layer inherits from the one before, which is complete.
 class Inheritance {
  public:
   Inheritance(const Voxmap& map, const FeatureSets& sets, std::vector<FeatureSetId>& of_slot)
@@ -123,7 +122,7 @@ std::vector<FeatureSetId> sets_by_slot(const Voxmap& map, const std::vector<Feat
   }
   Inheritance inheritance(map, sets, of_slot);
   for (int depth = 1; depth <= kInheritedLayers; ++depth)
-    for_each_run(stored.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for_each_chunk(stored.size(), threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) inheritance.inherit(stored[i], static_cast<Layer>(-depth));
     });
   return of_slot;

@@ -32,7 +32,7 @@ SurfaceVoxels find_surface(const GridMesh& mesh, const BrickLists& lists, const 
     if (!lists.empty(i)) surface.brick.push_back(static_cast<std::uint32_t>(i));
   }
   surface.cells.resize(candidates);
-  for_each_run(candidates, threads, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(candidates, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       surface.cells[i] = touched_cells(mesh, lists.of(surface.brick[i]), brick_corner(surface.brick[i], bricks));
     }

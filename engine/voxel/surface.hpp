@@ -1,4 +1,4 @@
-// The surface voxels of a mesh, before anything is known of inside and outside.
+// The surface voxels of a mesh: the first stage, before inside and outside are known.
 #pragma once
 
 #include "engine/voxel/brick_lists.hpp"
@@ -12,7 +12,7 @@ struct SurfaceVoxels {
   Eigen::Vector3i bricks = {0, 0, 0};
   std::vector<std::uint32_t> brick;  // (n)       -  brick index
   std::vector<BrickMask> cells;      // (n)       -
-  std::vector<std::uint32_t> entry;  // (bricks)  -  where a brick stands in the two above, or kNoSurface
+  std::vector<std::uint32_t> entry;  // (bricks)  -  a brick's index in the two above, or kNoSurface
   std::uint64_t voxels = 0;
 };
 

@@ -8,10 +8,8 @@ namespace verisim {
 namespace {
 
 /// Grows with the angle of (x, y) from -x, from -2 to 2.
-double pseudo_angle(double x, double y) {
-  const double sum = std::abs(x) + std::abs(y);
-  if (sum == 0) return 0;
-  return y < 0 ? x / sum - 1 : 1 - x / sum;
+double turn_from_behind(double x, double y) {
+  return 2 - turn_of(-x, y);
 }
 
 double distance_from_axis(const Vector3d& p) {
@@ -37,7 +35,7 @@ FaceTrim::FaceTrim(const GridSurface& surface, std::vector<GridCurve> bounds, co
     : surface_(surface),
       bounds_(std::move(bounds)),
       epsilon_(epsilon),
-      leg_normal_(surface.shape() == GridSurface::Shape::plane ? Vector3d::UnitY() : Vector3d::UnitZ()) {
+      leg_normal_(surface.kind() == SurfaceKind::plane ? Vector3d::UnitY() : Vector3d::UnitZ()) {
   extents_.reserve(bounds_.size());
   for (const GridCurve& bound : bounds_) extents_.push_back(bound.extent(leg_normal_));
   for (const Vector3d& candidate : within) {
@@ -49,25 +47,28 @@ FaceTrim::FaceTrim(const GridSurface& surface, std::vector<GridCurve> bounds, co
 
 /// What grows along the second leg.
 double FaceTrim::height(const Vector3d& local) const {
-  switch (surface_.shape()) {
-    case GridSurface::Shape::plane:
+  switch (surface_.kind()) {
+    case SurfaceKind::plane:
       return local.y();
-    case GridSurface::Shape::torus:
-      return pseudo_angle(distance_from_axis(local) - surface_.major_radius(), local.z());
-    default:
+    case SurfaceKind::cylinder:
+    case SurfaceKind::cone:
+    case SurfaceKind::sphere:
       return local.z();
+    case SurfaceKind::torus:
+      break;
   }
+  return turn_from_behind(distance_from_axis(local) - surface_.meridian().ring, local.z());
 }
 
 /// A torus has two circles at one height.
 bool FaceTrim::same_branch(const Vector3d& a, const Vector3d& b) const {
-  if (surface_.shape() != GridSurface::Shape::torus) return true;
-  const auto is_outer = [&](const Vector3d& p) { return distance_from_axis(p) > surface_.major_radius(); };
+  if (surface_.kind() != SurfaceKind::torus) return true;
+  const auto is_outer = [&](const Vector3d& p) { return distance_from_axis(p) > surface_.meridian().ring; };
   return is_outer(a) == is_outer(b);
 }
 
 bool FaceTrim::set_reference(const Vector3d& local) {
-  const bool flat = surface_.shape() == GridSurface::Shape::plane;
+  const bool flat = surface_.kind() == SurfaceKind::plane;
   const double rho = distance_from_axis(local);
   if (!flat && rho <= epsilon_) return false;
   const Vector3d outward = flat ? Vector3d(0, 0, 0) : Vector3d(local.x() / rho, local.y() / rho, 0);
@@ -86,7 +87,7 @@ bool FaceTrim::set_reference(const Vector3d& local) {
 }
 
 bool FaceTrim::on_first_leg(const Vector3d& from, const Vector3d& crossing) const {
-  if (surface_.shape() == GridSurface::Shape::plane) {
+  if (surface_.kind() == SurfaceKind::plane) {
     return (crossing.x() < from.x()) != (crossing.x() < reference_.x());
   }
   return meets_before(from, reference_, crossing);

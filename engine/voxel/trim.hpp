@@ -3,7 +3,7 @@
 // A path on the surface from the point to one that is known to be within crosses the bounds an even number of times if
 // the point is within too. The path has two legs that lie in planes, so that crossings are those of curves with planes:
 // first at constant height around the axis (on a plane: along x) to the known point's meridian (its x), then along that
-// meridian, whose crossings are known beforehand.
+// meridian, whose crossings are known beforehand. (Why contacts ask engine/exact/trim.hpp instead stands there.)
 #pragma once
 
 #include <array>

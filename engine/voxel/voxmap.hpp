@@ -1,11 +1,12 @@
-// The voxel representation of one body: a sparse map of signed distance layers, and the pointshell that belongs to it.
+// The voxel representation of one body: a sparse map of signed distance layers (voxmap) and its pointshell.
 //
 // Source: dissertation chapters 6 and 8 (surface voxels, 12-bit private data per voxel; here 16); Voxmap PointShell of
 // McNeely et al. 1999. Coordinates: grid coordinates G are body coordinates shifted by `origin` and divided by the
 // voxel size, so cell (i,j,k) is the closed box [i,i+1] x [j,j+1] x [k,k+1].
 //
 // Storage is in bricks of 8 x 8 x 8 voxels. A brick without a surface voxel within the band holds one value everywhere
-// and is shared (block kOutsideBlock or kInsideBlock); so memory follows surface area. Look-up is two dependent loads:
+// and refers to one common block (kOutsideBlock or kInsideBlock), so memory follows surface area. Look-up is two
+// dependent loads:
 //   block = brick_block[brick index];  layer = layers[block * 512 + cell in brick]
 // The grid has a border of at least one outside brick on every side: coordinates clamped to the grid read "outside".
 #pragma once
@@ -74,7 +75,7 @@ struct Voxmap {                            //  shape        unit  meaning
 }
 
 /// One point per surface voxel: the voxel's centre with an inward normal. Sorted by brick (z, y, x), then by cell
-/// within it, so that point i is surface voxel i of the same body's voxmap and a cluster is a run of neighbours.
+/// within it, so that point i is surface voxel i of the same body's voxmap and a cluster is a sequence of neighbours.
 /// A normal is the mean of the faces in the voxel, weighted by their area in it (normals.hpp).
 struct Pointshell {                    //  shape  unit  meaning
   std::vector<float> x, y, z;          //  (n)    m     voxel's centre relative to `reference`, body coordinates
@@ -92,11 +93,11 @@ struct Pointshell {                    //  shape  unit  meaning
   [[nodiscard]] std::size_t memory_bytes() const;
 };
 
-/// What a body collides with and by.
+/// The voxel representation of a body.
 struct VoxelBody {
   Voxmap voxmap;
   Pointshell shell;
-  BodyFeatures features;                ///< what shell.features refers to; empty unless association.hpp has filled it
+  BodyFeatures features;                ///< referred to by shell.features; empty unless filled by association.hpp
   std::vector<FeatureSetId> slot_sets;  ///< (blocks,512): see slot_sets.hpp; empty likewise
 };
 

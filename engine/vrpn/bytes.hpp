@@ -1,4 +1,4 @@
-// Numbers as they travel: big-endian integers of 32 bits and IEEE 754 doubles.
+// Numbers in network byte order: big-endian integers of 32 bits and IEEE 754 doubles.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ void put_float64(Bytes& out, double value);
 /// The text and one NUL.
 void put_text(Bytes& out, std::string_view text);
 
-/// Reads a payload from its beginning. What lies past the end reads as 0 and makes ok() false for good.
+/// Reads a payload from its beginning. Reading past the end gives 0 and sets ok() to false for good.
 class Reader {
  public:
   explicit Reader(View bytes) : rest_(bytes) {}

@@ -1,6 +1,6 @@
-// A VRPN client of one device: asks for a connection (by UDP request or by TCP), keeps asking when it is lost, pings
-// until the server has answered, and hands over every report. Reads no clock; no call waits longer than it is told to.
-// Source: reference/vrpn_wire.
+// A VRPN client of one device. It asks for a connection (by UDP request or by TCP), asks again if the connection is
+// lost, pings until the server has answered, and hands over every report. Reads no clock. No call waits longer than
+// told. Source: reference/vrpn_wire.
 #pragma once
 
 #include <memory>
@@ -50,7 +50,7 @@ class Client {
   RemoteName remote_;
   Names names_;
   Address server_;
-  Address own_;  ///< where the server finds this client
+  Address own_;  ///< address of this client for the server
   bool use_udp_;
   Socket udp_;      ///< sends requests, takes reports
   Socket waiting_;  ///< for the server to connect back; not open if direct

@@ -60,11 +60,11 @@ void Connection::take_cookie(Timestamp now) {
 void Connection::take_messages(const Handler& handler) {
   View rest(in_);
   while (!faulty()) {
-    const Framed framed = first_message(rest);
-    if (framed.state == Framed::State::malformed) fault_ = "sent a message of an impossible length";
-    if (framed.state != Framed::State::whole) break;
-    take(framed.message, handler);
-    rest = rest.subspan(framed.bytes);
+    const ParsedMessage parsed = first_message(rest);
+    if (parsed.state == ParsedMessage::State::malformed) fault_ = "sent a message of an impossible length";
+    if (parsed.state != ParsedMessage::State::whole) break;
+    take(parsed.message, handler);
+    rest = rest.subspan(parsed.bytes);
   }
   in_.erase(in_.begin(), in_.end() - static_cast<std::ptrdiff_t>(rest.size()));
 }
@@ -72,10 +72,10 @@ void Connection::take_messages(const Handler& handler) {
 void Connection::receive_datagram(View datagram, const Handler& handler) {
   if (!established_) return;
   while (!datagram.empty() && !faulty()) {
-    const Framed framed = first_message(datagram);
-    if (framed.state != Framed::State::whole) return;
-    if (framed.message.type >= 0) take(framed.message, handler);  // descriptions travel on TCP alone
-    datagram = datagram.subspan(framed.bytes);
+    const ParsedMessage parsed = first_message(datagram);
+    if (parsed.state != ParsedMessage::State::whole) return;
+    if (parsed.message.type >= 0) take(parsed.message, handler);  // descriptions travel on TCP alone
+    datagram = datagram.subspan(parsed.bytes);
   }
 }
 

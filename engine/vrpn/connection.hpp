@@ -1,8 +1,8 @@
-// One side of one connection without its sockets: bytes that came in, messages understood, bytes to go out
+// One side of one connection without its sockets: received bytes, decoded messages, bytes to send
 // (reference/vrpn_wire, "Connection set-up", "Names and ids", "Channels").
 //
-// A connection belongs to whoever holds it; nothing is shared but the names. A peer that breaks the protocol, or does
-// not read, makes its own connection faulty and nobody else's.
+// Connections are independent of each other; they only use the same names. A peer that breaks the protocol, or does not
+// read, makes its own connection faulty and no other.
 #pragma once
 
 #include <functional>
@@ -15,13 +15,13 @@
 
 namespace verisim::vrpn {
 
-/// What one side calls its senders and types: a name's id is its place. The same for all connections of that side, and
-/// not changed while one is open.
+/// Names of one side's senders and types; the id of a name is its index. The same for all connections of that side, and
+/// constant while one is open.
 struct Names {
   std::vector<std::string> senders;
   std::vector<std::string> types;
 };
-/// Place of a name, or -1.
+/// Index of a name, or -1.
 [[nodiscard]] std::int32_t id_of(const std::vector<std::string>& names, std::string_view name);
 
 /// A message from the peer whose sender and type the peer has described.
@@ -33,7 +33,7 @@ struct Received {
 };
 using Handler = std::function<void(const Received&)>;
 
-/// Where the peer wants datagrams.
+/// Address at which the peer receives datagrams.
 struct UdpEnd {
   std::string host;  ///< as the peer wrote it; may be a name
   std::uint16_t port = 0;
@@ -47,7 +47,7 @@ class Connection {
   /// @pre every name can be described (is_name), and there are fewer than 2000 of each
   explicit Connection(const Names& names, std::optional<UdpEnd> own_udp = {});
 
-  /// Bytes from TCP, cut anywhere. Hands every understood message to `handler`; `now` dates what is answered.
+  /// Takes bytes from TCP, split anywhere. Hands every decoded message to `handler`. @param now  time stamp of answers
   void receive(View bytes, Timestamp now, const Handler& handler);
   /// One datagram. One that is malformed is ignored: anyone may have sent it.
   void receive_datagram(View datagram, const Handler& handler);
@@ -79,7 +79,7 @@ class Connection {
   std::optional<UdpEnd> peer_udp_;
   bool established_ = false;
   std::string fault_;
-  Bytes in_;  ///< at most one message that is not whole yet
+  Bytes in_;  ///< at most one incomplete message
   Bytes out_;
   std::size_t sent_ = 0;  ///< of out_
   std::uint32_t tcp_sequence_ = 0;

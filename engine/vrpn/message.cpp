@@ -44,26 +44,26 @@ void put_message(Bytes& out, const Message& message) {
   out.resize(begin + padded(out.size() - begin));
 }
 
-Framed first_message(View stream) {
-  Framed framed;
+ParsedMessage first_message(View stream) {
+  ParsedMessage parsed;
   Reader header(stream);
   const std::size_t length = header.uint32();
-  if (!header.ok()) return framed;
+  if (!header.ok()) return parsed;
   if (length < kHeaderBytes || padded(length - kHeaderBytes) > kPaddedPayloadMax) {
-    framed.state = Framed::State::malformed;
-    return framed;
+    parsed.state = ParsedMessage::State::malformed;
+    return parsed;
   }
-  framed.bytes = padded(length);
-  if (stream.size() < framed.bytes) return framed;
-  Message& m = framed.message;
+  parsed.bytes = padded(length);
+  if (stream.size() < parsed.bytes) return parsed;
+  Message& m = parsed.message;
   m.time.seconds = header.uint32();
   m.time.microseconds = header.uint32();
   m.sender = header.int32();
   m.type = header.int32();
   m.sequence = header.uint32();
   m.payload = stream.subspan(kHeaderBytes, length - kHeaderBytes);
-  framed.state = Framed::State::whole;
-  return framed;
+  parsed.state = ParsedMessage::State::whole;
+  return parsed;
 }
 
 }  // namespace verisim::vrpn

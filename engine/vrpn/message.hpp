@@ -1,5 +1,5 @@
-// Cookie and message framing of VRPN's network protocol, version 07 (reference/vrpn_wire, "Cookie", "Message",
-// "Limits"). Pure functions of bytes: no sockets, no clock, no state; any input is survived.
+// Cookie and message headers of VRPN's network protocol, version 07 (reference/vrpn_wire, "Cookie", "Message",
+// "Limits"). Pure functions of bytes: no sockets, no clock, no state. Safe for any input.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,14 @@ namespace verisim::vrpn {
 inline constexpr std::uint16_t kDefaultPort = 3883;
 inline constexpr std::size_t kCookieBytes = 24;
 inline constexpr std::size_t kHeaderBytes = 24;
-inline constexpr std::size_t kPaddedPayloadMax = 64008;  ///< stock drops a connection that sends more
-inline constexpr std::size_t kDatagramMax = 1408;        ///< the longest that stock accepts
+inline constexpr std::size_t kPaddedPayloadMax = 64008;  ///< stock VRPN drops a connection that sends more
 
 /// Types of system messages.
 inline constexpr std::int32_t kSenderDescription = -1;
 inline constexpr std::int32_t kTypeDescription = -2;
 inline constexpr std::int32_t kUdpDescription = -3;
 inline constexpr std::int32_t kDisconnect = -5;
-inline constexpr std::int32_t kSystemTypeMin = -1999;  ///< below, stock drops the connection
+inline constexpr std::int32_t kSystemTypeMin = -1999;  ///< below, stock VRPN drops the connection
 
 /// Since 1970-01-01 UTC, by the sender's clock.
 struct Timestamp {
@@ -31,8 +30,8 @@ struct Message {
   Timestamp time;
   std::int32_t sender = 0;
   std::int32_t type = 0;
-  std::uint32_t sequence = 0;  ///< nobody reads it
-  View payload;                ///< of a message that was read: in the caller's bytes
+  std::uint32_t sequence = 0;  ///< not used by any reader
+  View payload;                ///< of a decoded message: refers to the caller's bytes
 };
 
 /// The 24 bytes that both sides send first: version 07.38, nothing to be logged.
@@ -45,16 +44,16 @@ void put_cookie(Bytes& out);
 void put_message(Bytes& out, const Message& message);
 
 /// The first message of a stream or datagram.
-struct Framed {
+struct ParsedMessage {
   enum class State {
-    whole,       ///< `message` is there, `bytes` long with its padding
-    incomplete,  ///< so far nothing is wrong, but more bytes have to come
+    whole,       ///< `message` is valid, `bytes` long with its padding
+    incomplete,  ///< valid so far, but more bytes are needed
     malformed    ///< no message can begin like this: shorter than its header, or longer than the limit
   };
   State state = State::incomplete;
   Message message;
   std::size_t bytes = 0;
 };
-[[nodiscard]] Framed first_message(View stream);
+[[nodiscard]] ParsedMessage first_message(View stream);
 
 }  // namespace verisim::vrpn

@@ -58,17 +58,6 @@ Bytes encode(const SensorPose& pose) {
   return payload;
 }
 
-std::optional<SensorPose> decode_sensor_pose(View payload) {
-  Reader reader(payload);
-  SensorPose pose;
-  pose.sensor = reader.int32();
-  (void)reader.int32();
-  for (double& x : pose.placement.position) x = reader.float64();
-  for (double& x : pose.placement.rotation) x = reader.float64();
-  if (!reader.ok() || !reader.rest().empty() || pose.sensor < 0) return {};
-  return pose;
-}
-
 Bytes encode(const Placement& placement) {
   Bytes payload;
   put_placement(payload, placement);

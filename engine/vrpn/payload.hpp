@@ -1,5 +1,5 @@
-// What messages hold: names, poses, analog channels, texts (reference/vrpn_wire, "System messages", "Tracker",
-// "Analog", "Text"). Decoders give nothing for a payload that is not what it should be. Pure functions.
+// Payloads of messages: names, poses, analog channels, texts (reference/vrpn_wire, "System messages", "Tracker",
+// "Analog", "Text"). Decoders return nothing for a malformed payload. Pure functions.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ inline constexpr std::size_t kNameMax = 95;       ///< bytes of a sender's or ty
 inline constexpr std::size_t kChannelsMax = 128;  ///< of one analog device
 inline constexpr std::size_t kTextMax = 1023;
 
-/// Names of the types used here. Both sides number them as they like; names are what is agreed.
+/// Names of the types used here. Each side has its own numbers for them.
 inline constexpr std::string_view kPing = "vrpn_Base ping_message";
 inline constexpr std::string_view kPong = "vrpn_Base pong_message";
 inline constexpr std::string_view kText = "vrpn_Base text_message";
@@ -44,7 +44,6 @@ struct SensorPose {
   Placement placement;
 };
 [[nodiscard]] Bytes encode(const SensorPose& pose);  ///< @pre pose.sensor >= 0
-[[nodiscard]] std::optional<SensorPose> decode_sensor_pose(View payload);
 
 /// kToRoom.
 [[nodiscard]] Bytes encode(const Placement& placement);
@@ -59,14 +58,14 @@ struct Analog {
 };
 /// @pre at most kChannelsMax
 [[nodiscard]] Bytes encode_analog(std::span<const double> channels);
-/// As many channels as the payload says it holds; the count must be a whole number. Surplus bytes are ignored.
+/// The number of channels is the payload's first number, which must be whole. Surplus bytes are ignored.
 [[nodiscard]] std::optional<Analog> decode_analog(View payload);
 
 /// kText.
 struct Text {
   std::uint32_t severity = 0;  ///< 0 normal, 1 warning, 2 error
   std::uint32_t level = 0;
-  std::string text;  ///< printable ASCII; anything else a peer sent is a question mark
+  std::string text;  ///< printable ASCII; other received characters become question marks
 };
 [[nodiscard]] std::optional<Text> decode_text(View payload);
 
@@ -76,7 +75,7 @@ struct ConnectionRequest {
   std::uint16_t port = 0;  ///< 1024 or above
 };
 [[nodiscard]] Bytes encode(const ConnectionRequest& request);  ///< @pre a host is named
-/// As stock: a host of letters, digits and dots, white space, an integer; text after it is ignored.
+/// As in stock VRPN: a host of letters, digits and dots, white space, an integer; text after it is ignored.
 [[nodiscard]] std::optional<ConnectionRequest> decode_request(View datagram);
 
 }  // namespace verisim::vrpn

@@ -1,8 +1,8 @@
-// A VRPN server: listens, connects back to who asks by UDP, greets, answers pings, and publishes reports to everyone.
+// A VRPN server: listens, connects back to clients that ask by UDP, answers pings, and sends reports to all clients.
 //
-// One slow, silent or malformed client never disturbs another: no call waits for a client, each has its own bounded
-// queue and is closed alone, and each turn reads at most kReadMax bytes from each. Not thread-safe; reads no clock.
-// Source: reference/vrpn_wire. Every error on a client's side ends that client; construction alone can fail.
+// A slow, silent or malformed client never disturbs another: no call waits for a client, each client has its own
+// bounded queue, and each turn reads at most kReadMax bytes from each. An error of a client closes that client only;
+// only the constructor can fail. Not thread-safe; reads no clock. Source: reference/vrpn_wire.
 #pragma once
 
 #include <memory>
@@ -20,25 +20,26 @@ class Server {
   static constexpr std::size_t kReadMax = 64 * 1024;  ///< bytes of one client in one turn
   static constexpr std::uint32_t kGreetingMax = 10;   ///< s that a client may take to send its cookie
 
-  /// Listens at `at` on TCP and UDP; port 0 takes one that is free for both. `devices` and `types` are the names that
-  /// this server sends; ping and pong are added. Error(io) if the port is taken. @pre is_name(each of them)
+  /// Listens at `at` on TCP and UDP; port 0 takes one that is free for both. Error(io) if the port is taken.
+  /// @param devices, types  names that this server sends; ping and pong are added
+  /// @pre is_name(each of them)
   Server(const Address& at, std::vector<std::string> devices, std::vector<std::string> types);
 
-  /// Called with what a client sends to one of our devices, pings excepted. `reply` answers that client alone.
+  /// Called with messages of a client to one of our devices, except pings. `reply` answers that client alone.
   using Reply = std::function<void(std::string_view type, View payload)>;
   using RequestHandler = std::function<void(const Received& request, const Reply& reply)>;
   void on_request(RequestHandler handler) { request_handler_ = std::move(handler); }
 
-  /// Waits up to `wait_ms` for something to happen, and deals with everything that has. @pre wait_ms >= 0
+  /// Waits up to `wait_ms` for events and handles all that have occurred. @pre wait_ms >= 0
   void turn(Timestamp now, int wait_ms);
-  /// To all clients: as a datagram to those that asked for datagrams, else by TCP. Leaves with the next turn at the
+  /// Sends to all clients, by datagram to those that asked for datagrams, else by TCP, with the next turn at the
   /// latest. @pre device and type are among the names given to the constructor
   void publish(std::string_view device, std::string_view type, Timestamp time, View payload);
 
   [[nodiscard]] const Address& address() const { return address_; }
-  /// Clients whose cookie has come.
+  /// Number of clients whose cookie was received.
   [[nodiscard]] std::size_t clients() const;
-  /// Bytes that wait for the slowest of them.
+  /// Bytes queued for the slowest client.
   [[nodiscard]] std::size_t unsent() const;
   /// One line for each client that came or went since the last call.
   [[nodiscard]] std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
@@ -47,9 +48,9 @@ class Server {
   struct Client {
     Socket socket;
     Address address;
-    bool connecting = false;  ///< back to one who asked by UDP
+    bool connecting = false;  ///< back to a client that asked by UDP
     bool direct = false;      ///< came by TCP: never uses UDP
-    bool greeted = false;     ///< its coming was noted
+    bool greeted = false;     ///< its arrival was reported
     bool gone = false;
     std::uint32_t since = 0;  ///< s
     Connection connection;

@@ -38,7 +38,7 @@ class Socket {
   /// Bound to `at`; port 0 takes a free one. Error(io) with the reason if that cannot be had.
   [[nodiscard]] static Socket listen_tcp(const Address& at);
   [[nodiscard]] static Socket bind_udp(const Address& at);
-  /// Begins to connect; writable once that is decided, then connect_failed() tells. Not open if refused at once.
+  /// Begins to connect. Writable once that is decided; then connect_failed() is valid. Not open if refused at once.
   [[nodiscard]] static Socket connect_tcp(const Address& to);
 
   [[nodiscard]] bool open() const { return fd_ >= 0; }
@@ -53,14 +53,14 @@ class Socket {
   [[nodiscard]] int write(View bytes) const;
   /// One datagram's length; -1: none waits. A datagram longer than `into` is cut.
   [[nodiscard]] int read_datagram(std::span<std::uint8_t> into, Address& from) const;
-  /// Lost if it cannot go now: that is what datagrams are for.
+  /// Sends a datagram, or drops it if it cannot be sent now.
   void send_datagram(View bytes, const Address& to) const;
 
  private:
   int fd_ = -1;
 };
 
-/// The address of this machine that faces `to`.
+/// The local address from which `to` is reached.
 [[nodiscard]] Address local_address_toward(const Address& to);
 
 }  // namespace verisim::vrpn

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::array kTurns = {0.0, 0.6, -0.6};  // rad of yaw to start from: Gauss-Newton finds its way from there
 
-/// Depth-first over the ways to name `count` LEDs.
-struct Naming {
+/// Depth-first over the assignments of blobs to the first `count` LEDs.
+struct AssignmentSearch {
   const Reading& reading;
   const TrackerSettings& settings;
   const Pinhole& pinhole;
@@ -48,7 +48,7 @@ struct Naming {
       const Quaterniond C_RL = Quaterniond(upright.C_LR).conjugate();
       const Pose start{upright.C_LR.transpose() * two.p_L, (C_RL * R_LH).normalized()};
       const SolvedPose solved = solver.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright, start);
-      if (!solved.found || solved.cost > settings.thresholds.cost_max * n) continue;
+      if (!solved.found || solved.cost > settings.thresholds.cost_per_led_max * n) continue;
       if (best.solved.found && solved.cost >= best.solved.cost) continue;
       best = {solved, current};
     }
@@ -75,9 +75,9 @@ Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, c
   VERISIM_ASSERT(is_unit(Vector3d(upright.C_LR.row(1))));
   const int count = std::min(settings.leds.count, reading.blob_count);
   if (count < 3) return {};
-  Naming naming{reading, settings, pinhole, solver, upright, count};
-  naming.descend(0, 0);
-  return naming.best;
+  AssignmentSearch search{reading, settings, pinhole, solver, upright, count};
+  search.descend(0, 0);
+  return search.best;
 }
 
 }  // namespace verisim::wii

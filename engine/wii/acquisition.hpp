@@ -1,4 +1,4 @@
-// Finding a head of three or four LEDs in one image without knowing where it was.
+// Acquisition: finding a head of three or four LEDs in one image without knowing where it was.
 #pragma once
 
 #include "engine/wii/assignment.hpp"
@@ -11,9 +11,9 @@ struct Acquired {
   Assignment blob = {-1, -1, -1, -1};
 };
 
-/// Tries every way to name the blobs, from several turns of the head, and takes the pose that fits best and is most
-/// upright. Needs three LEDs in view (the first three, if the head has four and only three blobs are seen). At most
-/// 24 x 3 solutions; only while no head is followed.
+/// Solves for the pose under every assignment of blobs to LEDs, from three turns of the head each, and takes the one of
+/// least cost (SolvedPose::cost). Needs three LEDs in view: the first three, if the head has four and only three blobs
+/// are seen. At most 24 x 3 solutions; only while no head is followed.
 /// @pre upright.C_LR is the levelling of this reading: its rows are unit
 [[nodiscard]] Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, const Pinhole& pinhole,
                                     const PoseSolver& solver, const Upright& upright);

@@ -10,15 +10,17 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kMemory = 0.25;           // s; a head needs longer to roll over
+constexpr double kPairMemory = 0.25;       // s; a head needs longer to roll over
 constexpr double kPixelsPerSecond = 2000;  // 1.5 m/s at 1 m, for gaps of some reports
-constexpr double kOverturned = -0.2;       // cosine of the roll: no head is tilted by more than 101 degrees
+constexpr double kRollCosineMin = -0.2;    // cosine of the roll: no head is tilted by more than 101 degrees
 constexpr double kSizeScale = 1;           // blob size units: a true pair differs by no more
 constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly
-constexpr double kLedAbsent = 100;         // ten times kLedScale away, squared: nobody knows where it is
-constexpr double kSizeCounts = 2;          // sizes of real sensors follow distance badly: a hint, no proof
-constexpr int kDoubtsMax = 5;              // images
-constexpr double kLedScale = 10;           // pixel, how well an unsolved LED is where the pair says
+constexpr double kLedScale = 10;           // pixel; how near further LEDs are to where the pair alone puts them
+
+// Costs, in squared deviations over their scales.
+constexpr double kMissingLedCost = 100;  // of a further LED that is nowhere near its place
+constexpr double kSizeCostMax = 2;       // sizes of real sensors follow distance badly: a hint, no proof
+constexpr int kConfirmations = 5;        // images in a row that confirm a jump to another pair
 
 double distance_square(const Blob& a, const Blob& b) {
   return (a.u - b.u) * (a.u - b.u) + (a.v - b.v) * (a.v - b.v);
@@ -76,10 +78,10 @@ PairFollower::Match PairFollower::solve(const Reading& reading, int first, int s
 
 PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) {
   if (reading.blob_count < 2) return {};
-  if (followed_ && t - t_ <= kMemory) {
+  if (followed_ && t - t_ <= kPairMemory) {
     Match match = continue_pair(t - t_, reading, C_LR);
     if (!match.found()) return match;
-    if (match.pose.cos_roll > kOverturned) return reconsidered(reading, match, C_LR);
+    if (match.pose.cos_roll > kRollCosineMin) return reconsidered(reading, match, C_LR);
   }
   return acquire(reading, C_LR);
 }
@@ -88,27 +90,27 @@ PairFollower::Match PairFollower::reconsidered(const Reading& reading, const Mat
   Match other;
   if (reading.blob_count > 2) {
     const Match now = current.found() ? current : solve(reading, current.blob[0], current.blob[1], C_LR);
-    double cost = unlikeliness(reading, now, C_LR) - thresholds_.much_likelier;
-    if (cost > 0) other = likeliest(reading, C_LR, true, cost);
+    double cost = cost_of(reading, now, C_LR) - thresholds_.cost_margin;
+    if (cost > 0) other = least_cost_pair(reading, C_LR, true, cost);
   }
-  // It is offered until it is followed: to believe in a jump takes more than one image.
-  doubts_ = other.found() ? std::min(doubts_ + 1, kDoubtsMax) : 0;
-  return doubts_ < kDoubtsMax ? current : other;
+  // One image does not confirm a jump. Once confirmed, the other pair is returned until it is followed.
+  confirmations_ = other.found() ? std::min(confirmations_ + 1, kConfirmations) : 0;
+  return confirmations_ < kConfirmations ? current : other;
 }
 
-bool PairFollower::is_stranger(const Blob& blob, double distance_square_to_led) const {
-  return distance_square_to_stranger(blob) < distance_square_to_led;
+bool PairFollower::is_clutter(const Blob& blob, double distance_square_to_led) const {
+  return distance_square_to_clutter(blob) < distance_square_to_led;
 }
 
 PairFollower::Match PairFollower::continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const {
-  // Half their spacing is further than a head moves between reports (5 m/s at any distance) and nearer than a swap.
+  // The gate: half the spacing of the two blobs is further than a head moves between reports (5 m/s at any distance)
+  // and nearer than a swap of the two.
   const double way = kPixelsPerSecond * age;
   const double gate_square = 400 + 0.25 * distance_square(last_[0], last_[1]) + way * way;
   const auto cost = [&](int b, std::size_t led) {
     const Blob& blob = reading.blobs[static_cast<std::size_t>(b)];
     const double moved = distance_square(blob, last_[led]);
-    const bool likelier_a_lamp = distance_square_to_stranger(blob) < moved;
-    return moved > gate_square || likelier_a_lamp ? std::numeric_limits<double>::infinity() : moved;
+    return moved > gate_square || is_clutter(blob, moved) ? std::numeric_limits<double>::infinity() : moved;
   };
   std::array<int, 2> best = {-1, -1};
   double best_cost = std::numeric_limits<double>::infinity();
@@ -123,24 +125,24 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
 }
 
 PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
-  // Where further LEDs must be is known only roughly before a yaw is: they choose among pairs and refuse none.
-  double cost = thresholds_.unlikely_max + kLedAbsent * (leds_.count - 2);
-  return likeliest(reading, C_LR, false, cost);
+  // Without the yaw, the places of further LEDs are known only roughly: they choose among pairs and refuse none.
+  double cost = thresholds_.pair_cost_max + kMissingLedCost * (leds_.count - 2);
+  return least_cost_pair(reading, C_LR, false, cost);
 }
 
-PairFollower::Match PairFollower::likeliest(const Reading& reading, const Matrix3d& C_LR, bool strangers_too,
-                                            double& cost) const {
-  const auto stranger = [&](int b) {
-    return !strangers_too && distance_square_to_stranger(reading.blobs[static_cast<std::size_t>(b)]) <
-                                 thresholds_.stranger * thresholds_.stranger;
+PairFollower::Match PairFollower::least_cost_pair(const Reading& reading, const Matrix3d& C_LR, bool clutter_too,
+                                                  double& cost) const {
+  const auto is_near_clutter = [&](int b) {
+    return !clutter_too && distance_square_to_clutter(reading.blobs[static_cast<std::size_t>(b)]) <
+                               thresholds_.clutter_radius * thresholds_.clutter_radius;
   };
   Match best;
   for (int i = 0; i < reading.blob_count; ++i)
     for (int j = 0; j < reading.blob_count; ++j) {
-      if (i == j || stranger(i) || stranger(j)) continue;
+      if (i == j || is_near_clutter(i) || is_near_clutter(j)) continue;
       const Match match = solve(reading, i, j, C_LR);
       if (!match.found() || match.pose.cos_roll <= 0) continue;
-      const double here = unlikeliness(reading, match, C_LR);
+      const double here = cost_of(reading, match, C_LR);
       if (here >= cost) continue;
       best = match;
       cost = here;
@@ -148,14 +150,14 @@ PairFollower::Match PairFollower::likeliest(const Reading& reading, const Matrix
   return best;
 }
 
-double PairFollower::distance_square_to_stranger(const Blob& blob) const {
+double PairFollower::distance_square_to_clutter(const Blob& blob) const {
   double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < stranger_count_; ++i)
-    nearest = std::min(nearest, distance_square(blob, strangers_[static_cast<std::size_t>(i)]));
+  for (int i = 0; i < clutter_count_; ++i)
+    nearest = std::min(nearest, distance_square(blob, clutter_[static_cast<std::size_t>(i)]));
   return nearest;
 }
 
-double PairFollower::unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
+double PairFollower::cost_of(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
   const TwoPointPose& pose = match.pose;
   const auto size = [&](std::size_t i) { return reading.blobs[static_cast<std::size_t>(match.blob[i])].size; };
   const double roll = pose.sin_roll / thresholds_.roll_sigma;
@@ -164,7 +166,7 @@ double PairFollower::unlikeliness(const Reading& reading, const Match& match, co
   if (size_at_1m_ > 0) {
     const double expected = std::clamp(size_at_1m_ / pose.p_L.norm(), 1.0, 15.0);
     const double other = ((size(0) + size(1)) / 2 - expected) / kSizeScale;
-    cost += std::min(other * other, kSizeCounts);
+    cost += std::min(other * other, kSizeCostMax);
   }
   const Matrix3d R_LH = rotation_about_z(pose.cos_roll, pose.sin_roll).toRotationMatrix();
   for (std::size_t led = 2; led < static_cast<std::size_t>(leds_.count); ++led) {
@@ -176,7 +178,7 @@ double PairFollower::unlikeliness(const Reading& reading, const Match& match, co
       if (b != match.blob[0] && b != match.blob[1])
         nearest = std::min(nearest,
                            distance_square(reading.blobs[static_cast<std::size_t>(b)], Blob{pixel.x(), pixel.y(), 0}));
-    cost += std::min(nearest / (kLedScale * kLedScale), kLedAbsent);
+    cost += std::min(nearest / (kLedScale * kLedScale), kMissingLedCost);
   }
   return cost;
 }
@@ -190,10 +192,10 @@ void PairFollower::follow(double t, const Reading& reading, const Match& match) 
   for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];
   const double size_at_1m = (last_[0].size + last_[1].size) / 2 * match.pose.p_L.norm();
   size_at_1m_ = size_at_1m_ > 0 ? size_at_1m_ + kSizeLearning * (size_at_1m - size_at_1m_) : size_at_1m;
-  stranger_count_ = 0;
+  clutter_count_ = 0;
   for (int b = 0; b < reading.blob_count; ++b)
     if (b != match.blob[0] && b != match.blob[1])
-      strangers_[static_cast<std::size_t>(stranger_count_++)] = reading.blobs[static_cast<std::size_t>(b)];
+      clutter_[static_cast<std::size_t>(clutter_count_++)] = reading.blobs[static_cast<std::size_t>(b)];
 }
 
 }  // namespace verisim::wii

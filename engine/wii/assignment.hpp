@@ -1,5 +1,6 @@
-// Which blob is which LED. The remote hands its slots out as blobs come and go, and exchanges them at will; a lamp may
-// hold one. Only the picture counts, never the slot number.
+// The assignment of blobs to LEDs, which trackers of several targets call data association. The remote puts a blob into
+// any slot and may exchange slots at will, so that only the image counts and never the slot's number. A blob that is no
+// LED, such as a lamp's, is clutter.
 #pragma once
 
 #include <array>
@@ -12,13 +13,15 @@ namespace verisim::wii {
 /// Blob index of each LED, -1 where it is not seen.
 using Assignment = std::array<int, kLedsMax>;
 
-/// The assignment whose blobs lie nearest to where the LEDs are expected (sum of squared pixel distances, none beyond
-/// `gate` pixels; an LED left out costs gate^2). All injective assignments are compared: at most 209.
-/// @pre expected holds a pixel for each of at most kLedsMax LEDs; gate is finite and not negative
+/// The assignment of least cost: global nearest neighbour with gating. The cost is the sum of squared pixel distances
+/// between blobs and the `expected` pixels of the LEDs. No blob further than `gate` pixels from an LED is assigned to
+/// it; an LED without a blob costs gate^2. All injective assignments are compared: at most 209.
+/// @pre expected holds the pixels of at most kLedsMax LEDs; gate is finite and not negative
 [[nodiscard]] Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vector2d> expected,
                                             double gate);
 
-/// Follows the first two LEDs through swaps, ghosts and short losses. Fixed size, no allocation.
+/// Follows the blobs of the first two LEDs from image to image through slot swaps, clutter and short losses. Fixed
+/// size, no allocation.
 class PairFollower {
  public:
   /// @pre the layout has two LEDs or more
@@ -29,22 +32,27 @@ class PairFollower {
     std::array<int, 2> blob = {-1, -1};
     [[nodiscard]] bool found() const { return pose.found; }
   };
-  /// The pair nearest to the followed one while that is younger than 0.25 s; else, or when that one stands on its head,
-  /// the pair that looks most like a head, and enough: upright in L, equally large and as large as at its distance
-  /// before, further LEDs where they must be, and none of them a blob that stood beside the head before (a lamp).
+  /// The two blobs of this image. While the followed pair is younger than 0.25 s: those nearest to it, within a gate
+  /// and nearer to it than to clutter. Else, or when those mean a head that stands upside down: the pair of least cost,
+  /// if that is low enough. The cost adds up the squared deviations, each over its scale, of
+  ///   - the head's roll from upright,
+  ///   - one blob's size from the other's, and their mean from the size learned for that distance,
+  ///   - the blob nearest to each further LED from where the pair says that the LED must be.
+  /// A pair of least cost has no blob within clutter_radius of clutter in the image that was followed last.
   [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR);
-  /// `current` (its pose may be missing), or another pair of this image that has looked much more like a head in five
-  /// images in a row: an LED that was dark when a lamp came is back. Only images with three blobs or more cost
-  /// anything.
+  /// `current` (its pose may be missing), or another pair of this image, once in five images in a row another pair has
+  /// cost clearly less: an LED whose place a lamp took while it was dark is back. Nothing is computed for images with
+  /// fewer than three blobs.
   [[nodiscard]] Match reconsidered(const Reading& reading, const Match& current, const Matrix3d& C_LR);
-  /// Whether a blob is nearer to one that stood beside the followed pair than, by this much, to an LED's place.
-  [[nodiscard]] bool is_stranger(const Blob& blob, double distance_square_to_led) const;
-  /// Follow these two from now on. @pre t is finite; the match's blobs are two of the reading's
+  /// Whether a blob is nearer to clutter in the image that was followed last than to an LED's place [pixel^2].
+  [[nodiscard]] bool is_clutter(const Blob& blob, double distance_square_to_led) const;
+  /// Follow these two from now on; all other blobs of this image are clutter.
+  /// @pre t is finite; the match's blobs are two of the reading's
   void follow(double t, const Reading& reading, const Match& match);
   void forget() {
     followed_ = false;
-    stranger_count_ = 0;
-    doubts_ = 0;
+    clutter_count_ = 0;
+    confirmations_ = 0;
     size_at_1m_ = 0;
   }
 
@@ -52,10 +60,11 @@ class PairFollower {
   [[nodiscard]] Match solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const;
   [[nodiscard]] Match continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const;
   [[nodiscard]] Match acquire(const Reading& reading, const Matrix3d& C_LR) const;
-  /// The likeliest pair below `cost`, which becomes its unlikeliness.
-  [[nodiscard]] Match likeliest(const Reading& reading, const Matrix3d& C_LR, bool strangers_too, double& cost) const;
-  [[nodiscard]] double distance_square_to_stranger(const Blob& blob) const;
-  [[nodiscard]] double unlikeliness(const Reading& reading, const Match& match, const Matrix3d& C_LR) const;
+  /// The pair of least cost, if that is below `cost`, which becomes it.
+  [[nodiscard]] Match least_cost_pair(const Reading& reading, const Matrix3d& C_LR, bool clutter_too,
+                                      double& cost) const;
+  [[nodiscard]] double distance_square_to_clutter(const Blob& blob) const;
+  [[nodiscard]] double cost_of(const Reading& reading, const Match& match, const Matrix3d& C_LR) const;
 
   LedLayout leds_;
   Pinhole pinhole_;
@@ -64,9 +73,9 @@ class PairFollower {
   bool followed_ = false;
   double t_ = 0;
   std::array<Blob, 2> last_;
-  std::array<Blob, kSlots> strangers_;  ///< what else was in the image then
-  int stranger_count_ = 0;
-  int doubts_ = 0;         ///< images in a row in which another pair was likelier
+  std::array<Blob, kSlots> clutter_;  ///< the other blobs of that image
+  int clutter_count_ = 0;
+  int confirmations_ = 0;  ///< images in a row in which another pair cost less
   double size_at_1m_ = 0;  ///< of the LEDs' blobs, learned; 0: not known
 };
 

@@ -9,7 +9,7 @@ constexpr double kForceMin = 0.05;     // g
 constexpr double kForceMax = 8;        // g
 constexpr double kDistinctPixels = 2;  // two LEDs 0.15 m apart are this close only beyond 90 m
 
-bool believable(const Blob& b) {
+bool plausible(const Blob& b) {
   // Written so that a NaN fails every comparison. Half a pixel of margin lets ideal, unrounded traces through.
   const bool inside = b.u >= -0.5 && b.u < kWidth && b.v >= -0.5 && b.v < kHeight && b.size >= 0 && b.size <= 15;
   return inside && (b.u != 0 || b.v != 0 || b.size != 0);
@@ -29,7 +29,7 @@ bool read_channels(std::span<const double> channels, Reading& reading) {
   reading.blob_count = 0;
   for (std::size_t slot = 0; 6 + 3 * slot < channels.size() && slot < kSlots; ++slot) {
     const Blob b{channels[4 + 3 * slot], channels[5 + 3 * slot], channels[6 + 3 * slot]};
-    if (believable(b) && !coincides(reading, b)) reading.blobs[reading.blob_count++] = b;
+    if (plausible(b) && !coincides(reading, b)) reading.blobs[reading.blob_count++] = b;
   }
   reading.force_R = remote_from_accelerometer({channels[1], channels[2], channels[3]});
   const double square = reading.force_R.squaredNorm();

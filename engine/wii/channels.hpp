@@ -29,7 +29,7 @@ struct Blob {
   double size = 0;  ///< 0 … 15
 };
 
-/// The believable part of one report.
+/// The plausible part of one report.
 struct Reading {
   std::array<Blob, kSlots> blobs;  ///< the first `blob_count` are set, in slot order, no two at one place
   int blob_count = 0;

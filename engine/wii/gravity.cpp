@@ -46,9 +46,9 @@ void GravityFilter::add(double dt, const Vector3d& force_R) {
     if (shaken || (force_R == up_R_ && rate_R_.isZero(0))) return;
     const double keep = time_constant_ / (time_constant_ + dt);
     const Vector3d expected = up_R_ + dt * rate_R_;
-    const Vector3d surprise = force_R - expected;
-    const Vector3d mixed = expected + (1 - keep * keep) * surprise;
-    rate_R_ += (1 - keep) / (time_constant_ + dt) * surprise;
+    const Vector3d innovation = force_R - expected;
+    const Vector3d mixed = expected + (1 - keep * keep) * innovation;
+    rate_R_ += (1 - keep) / (time_constant_ + dt) * innovation;
     const bool opposed = mixed.norm() < kDirectionMin;
     up_R_ = opposed ? force_R : mixed;
     if (opposed) rate_R_.setZero();

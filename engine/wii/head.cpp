@@ -28,7 +28,7 @@ Head::Head(std::string name, std::unique_ptr<ReportSource> source, const std::st
   waits_ = source_->next(waiting_);
 }
 
-void Head::follow(double t) {
+void Head::advance(double t) {
   VERISIM_ASSERT(std::isfinite(t));
   taken_ = 0;
   for (; waits_ && waiting_.t <= t + kSameTime; waits_ = source_->next(waiting_)) {
@@ -37,6 +37,23 @@ void Head::follow(double t) {
     ++taken_;
   }
   if (taken_ == 0 && estimate_.valid) estimate_ = tracker_->heartbeat(t);
+}
+
+void Head::declare(Columns& columns) const {
+  const std::string state = "/state/wii/" + name_;
+  const std::string reports = "/cost/wii/" + name_ + "/reports";
+  const auto at_reports = [&](const char* fact, const char* units, const char* description, auto get) {
+    columns.add(state + fact, units, description, get, {}, reports);
+  };
+  at_reports("/time", "s", "when the remote took the report", [this] { return sensed_.t; });
+  at_reports("/channels", "1, g, pixel", "battery, acceleration x y z, four times u v size (-1: nothing seen)",
+             [this] { return sensed_.channels; });
+  at_reports("/truth_pose", "m, 1", "true head in levelled coordinates; NaN if not known",
+             [this] { return sensed_.X_LH; });
+  at_reports("/estimate_pose", "m, 1", "what the tracker says, in levelled coordinates",
+             [this] { return estimate_.pose; });
+  at_reports("/valid", "1", "1: the tracker stands by it", [this] { return estimate_.valid; });
+  columns.add(reports, "1", "reports tracked", [this] { return std::uint32_t{taken_}; });
 }
 
 }  // namespace verisim::wii

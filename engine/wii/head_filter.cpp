@@ -71,7 +71,8 @@ void HeadFilter::slow_down(double keep, View view) {
   P_.middleRows<3>(9) *= keep;
   P_.middleCols<3>(9) *= keep;
   if (view == View::pair) return;
-  // One LED still shows motion across its ray: to damp that would make a lie of it, and a lie of depth to explain it.
+  // One LED still shows motion across its ray. Damping that too would falsify it, and the depth that is made to explain
+  // it.
   const Vector3d ray = X_RH_.position.normalized();
   const Matrix3d damp = view == View::none ? Matrix3d(keep * Matrix3d::Identity())
                                            : Matrix3d(Matrix3d::Identity() - (1 - keep) * ray * ray.transpose());

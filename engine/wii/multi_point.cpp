@@ -10,10 +10,10 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kMemory = 0.25;          // s that a lost head is looked for where it was
+constexpr double kLostHeadMemory = 0.25;  // s that a lost head is looked for where it was
 constexpr double kOtherRemoteMax = 0.03;  // s: three reports; an older image of the other remote is no use
 constexpr double kBothSilent = 0.05;      // s without the first remote after which the second reports
-constexpr int kPatience = 5;              // reports before the head is sought anew beside a strange light
+constexpr int kUnassignedReportsMax = 5;  // reports with unassigned blobs before acquisition
 
 class MultiPoint final : public TrackerBase {
  public:
@@ -21,6 +21,7 @@ class MultiPoint final : public TrackerBase {
       : TrackerBase(settings),
         name_(name),
         remotes_(remotes),
+        X_R1R2_(settings.X_R1R2.value_or(Pose())),
         solver_(settings),
         followers_{PairFollower(settings.leds, pinhole(), settings.thresholds),
                    PairFollower(settings.leds, pinhole(), settings.thresholds)} {}
@@ -37,15 +38,15 @@ class MultiPoint final : public TrackerBase {
     if (remote >= remotes_) return;
     views_[static_cast<std::size_t>(remote)] = {reading, t};
     if (!reports(t, remote) || !gravity(0).known()) return;
-    upright_ = believe();
+    upright_ = prior();
     found_ = {};
-    if (followed_ && std::abs(t - t_followed_) <= kMemory) {  // the other remote's clock may be ahead
+    if (followed_ && std::abs(t - t_followed_) <= kLostHeadMemory) {  // the other remote's clock may be ahead
       found_ = follow(t);
-      if (strange_ >= kPatience) seek_again(t);
+      if (unassigned_ >= kUnassignedReportsMax) reacquire(t);
     } else {
       found_ = acquire(t);
     }
-    if (!found_.found || found_.cost > settings().thresholds.cost_max * settings().leds.count) return;
+    if (!found_.found || found_.cost > settings().thresholds.cost_per_led_max * settings().leds.count) return;
     level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
     result.known = true;
     result.usable = result.covariance.diagonal().head<3>().maxCoeff() <
@@ -57,8 +58,8 @@ class MultiPoint final : public TrackerBase {
     return t - views_[0].t > kBothSilent;
   }
 
-  /// Yaw and pitch are believed to be near zero …
-  [[nodiscard]] Upright believe() const {
+  /// Yaw and pitch are near zero …
+  [[nodiscard]] Upright prior() const {
     Upright u;
     u.C_LR = gravity(0).C_LR();
     u.sigma_x = settings().thresholds.prior_width * settings().yaw_sigma;
@@ -66,8 +67,8 @@ class MultiPoint final : public TrackerBase {
     u.sigma_roll = settings().thresholds.roll_sigma;
     return u;
   }
-  /// … and, when they were seen a moment ago and now are not, near what they were.
-  void believe_last(double t, Upright& u) const {
+  /// … or, when they were seen a moment ago and now are not, near what they were.
+  void take_last_as_prior(double t, Upright& u) const {
     const Matrix3d R_LH = u.C_LR * X_RH_.rotation.toRotationMatrix();
     const double drift = settings().thresholds.turn_rate * std::abs(t - t_full_);
     u.row_x = R_LH(2, 0);
@@ -77,14 +78,14 @@ class MultiPoint final : public TrackerBase {
   }
 
   [[nodiscard]] SolvedPose acquire(double t) {
-    strange_ = 0;
+    unassigned_ = 0;
     if (remotes_ == 2) return acquire_pairs(t);
     seen_fully_ = true;
     return acquire_head(views_[0].reading, settings(), pinhole(), solver_, upright_).solved;
   }
 
-  /// LEDs are missing while other lights are in view: one of those that are followed may be a lamp.
-  void seek_again(double t) {
+  /// LEDs are missing and blobs unassigned: a blob that is followed may be clutter.
+  void reacquire(double t) {
     const bool seen_fully = seen_fully_;
     const SolvedPose other = acquire(t);
     if (other.found)
@@ -97,18 +98,18 @@ class MultiPoint final : public TrackerBase {
     std::array<Sighting, kSightingsMax> sightings;
     int n = 0;
     int n_most = 0;
-    bool strange = false;
+    bool unassigned = false;
     for (int remote = 0; remote < remotes_; ++remote) {
       const int here = follow_in(t, remote, std::span(sightings).subspan(static_cast<std::size_t>(n)));
-      strange = strange ||
-                (here < settings().leds.count && views_[static_cast<std::size_t>(remote)].reading.blob_count > here);
+      unassigned = unassigned ||
+                   (here < settings().leds.count && views_[static_cast<std::size_t>(remote)].reading.blob_count > here);
       n_most = std::max(n_most, here);
       n += here;
     }
-    strange_ = strange ? strange_ + 1 : 0;
-    if (n_most < 2) return {};  // one light in each of two images may be a lamp
+    unassigned_ = unassigned ? unassigned_ + 1 : 0;
+    if (n_most < 2) return {};  // one blob in each of two images may be clutter
     seen_fully_ = n >= 3;
-    if (!seen_fully_) believe_last(t, upright_);
+    if (!seen_fully_) take_last_as_prior(t, upright_);
     return solver_.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright_, predicted(t));
   }
 
@@ -159,7 +160,7 @@ class MultiPoint final : public TrackerBase {
   [[nodiscard]] Pose in_first(const TwoPointPose& pose, int remote) const {
     const Quaterniond C_RL = Quaterniond(gravity(remote).C_LR()).conjugate();
     const Pose X_iH{C_RL * pose.p_L, (C_RL * rotation_about_z(pose.cos_roll, pose.sin_roll)).normalized()};
-    return remote == 0 ? X_iH : settings().X_R1R2 * X_iH;
+    return remote == 0 ? X_iH : X_R1R2_ * X_iH;
   }
 
   [[nodiscard]] Pose predicted(double t) const {
@@ -169,7 +170,7 @@ class MultiPoint final : public TrackerBase {
   void admitted(double t, bool valid) override {
     if (!valid) return;
     const double dt = t - t_followed_;
-    const bool continued = followed_ && dt <= kMemory;
+    const bool continued = followed_ && dt <= kLostHeadMemory;
     if (!continued)
       velocity_R_.setZero();
     else if (dt > 1e-4)
@@ -188,6 +189,7 @@ class MultiPoint final : public TrackerBase {
 
   std::string_view name_;
   int remotes_;
+  Pose X_R1R2_;  ///< the second remote in coordinates of the first
   PoseSolver solver_;
   std::array<PairFollower, 2> followers_;
   std::array<View, 2> views_;
@@ -195,7 +197,7 @@ class MultiPoint final : public TrackerBase {
   SolvedPose found_;
   bool seen_fully_ = false;  ///< this report's sightings determine yaw
   bool followed_ = false;
-  int strange_ = 0;  ///< reports in a row in which LEDs were missing and other lights in view
+  int unassigned_ = 0;  ///< reports in a row with missing LEDs and unassigned blobs
   double t_followed_ = 0;
   double t_full_ = 0;
   Pose X_RH_;  ///< followed pose
@@ -205,14 +207,12 @@ class MultiPoint final : public TrackerBase {
 }  // namespace
 
 std::unique_ptr<Tracker> make_three_led(const TrackerSettings& settings) {
-  if (settings.leds.count < 3)
-    fail(ErrorKind::input,
-         "tracker three-led: {} LEDs are described but it needs three; add a third to '# leds:', or use geometric",
-         settings.leds.count);
+  VERISIM_ASSERT(settings.leds.count >= 3);
   return std::make_unique<MultiPoint>(settings, "three-led", 1);
 }
 
 std::unique_ptr<Tracker> make_stereo(const TrackerSettings& settings) {
+  VERISIM_ASSERT(settings.X_R1R2.has_value());
   return std::make_unique<MultiPoint>(settings, "stereo", 2);
 }
 

@@ -9,7 +9,7 @@
 namespace verisim::wii {
 namespace {
 
-constexpr int kSteps = 12;
+constexpr int kIterations = 12;
 // A step of a hundredth of the pose's own standard deviation changes nothing that is known. (A limit in metres would
 // wait for directions that hardly anything determines.)
 constexpr double kConverged = 1e-4;
@@ -34,8 +34,8 @@ struct PoseSolver::Normal {
 PoseSolver::PoseSolver(const TrackerSettings& settings)
     : pinhole_(settings.fov), weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)) {
   VERISIM_ASSERT(is_positive(settings.pixel_sigma));
-  VERISIM_ASSERT(is_placement(settings.X_R1R2));
-  const Pose X_R2R1 = settings.X_R1R2.inverse();
+  VERISIM_ASSERT(!settings.X_R1R2 || is_placement(*settings.X_R1R2));
+  const Pose X_R2R1 = settings.X_R1R2.value_or(Pose()).inverse();
   R_iR_ = {Matrix3d::Identity(), X_R2R1.rotation.toRotationMatrix()};
   p_iR_ = {Vector3d::Zero(), X_R2R1.position};
 }
@@ -70,11 +70,11 @@ bool PoseSolver::accumulate(std::span<const Sighting> sightings, const Upright& 
   }
   // Entry (k, j) of R_LH moves with a rotation vector w as w . (column_j x e_k), both in L.
   const Matrix3d R_LH = upright.C_LR * R_RH;
-  const auto add_entry = [&](int k, int j, double believed, double sigma) {
+  const auto add_entry = [&](int k, int j, double prior, double sigma) {
     const Vector3d gradient_L = R_LH.col(j).cross(Vector3d::Unit(k));
     Vector6d row;
     row << Vector3d::Zero(), upright.C_LR.transpose() * gradient_L;
-    normal.add(row, believed - R_LH(k, j), 1 / (sigma * sigma));
+    normal.add(row, prior - R_LH(k, j), 1 / (sigma * sigma));
   };
   add_entry(2, 0, upright.row_x, upright.sigma_x);
   add_entry(2, 1, upright.row_y, upright.sigma_y);
@@ -90,7 +90,7 @@ SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright&
   VERISIM_ASSERT(upright.sigma_roll > 0);
   SolvedPose solved;
   solved.X_RH = start;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kIterations; ++step) {
     Normal normal;
     if (!accumulate(sightings, upright, solved.X_RH, normal)) return solved;
     const Eigen::LLT<Matrix6d> factor(normal.A);

@@ -1,6 +1,5 @@
-// The head pose that fits any number of sightings best, from one remote or two: Gauss-Newton on pixels, with what is
-// known of heads (they are nearly upright) as further measurements, so that what the sightings leave open is not left
-// open.
+// The head pose that fits any number of sightings best, from one remote or two: Gauss-Newton on pixels. A prior (heads
+// are nearly upright) counts as further measurements, so that it decides what the sightings leave open.
 #pragma once
 
 #include <array>
@@ -20,12 +19,12 @@ struct Sighting {
 
 inline constexpr int kSightingsMax = 2 * kLedsMax;
 
-/// What is believed of the head before looking. The third row of R_LH is (-sin yaw, cos yaw sin pitch, …) for
-/// R_LH = Rz(roll) Ry(yaw) Rx(pitch): its first two entries are believed, with these standard deviations.
+/// The prior of the head's rotation. For R_LH = Rz(roll) Ry(yaw) Rx(pitch) the third row of R_LH is
+/// (-sin yaw, cos yaw sin pitch, …): the prior gives its first two entries, with these standard deviations.
 struct Upright {
   Matrix3d C_LR = Matrix3d::Identity();  ///< of the first remote
-  double row_x = 0;                      ///< believed R_LH(2,0)
-  double row_y = 0;                      ///< believed R_LH(2,1)
+  double row_x = 0;                      ///< R_LH(2,0) a priori
+  double row_y = 0;                      ///< R_LH(2,1) a priori
   double sigma_x = 1;                    ///< rad, of yaw
   double sigma_y = 1;                    ///< rad, of pitch
   double sigma_roll = 1;                 ///< rad, of R_LH(1,0) about 0

@@ -1,6 +1,6 @@
-// scaat: every pixel coordinate, blob size and belief about heads corrects the filter by itself, so that one LED alone
-// still helps and none at all only lets the covariance grow. The accelerometer levels the state and says what "upright"
-// is.
+// scaat: every pixel coordinate, every blob size and the prior that heads are upright correct the filter one by one, so
+// that one LED alone still helps and none at all only lets the covariance grow. The accelerometer levels the state and
+// says what "upright" is.
 #include <algorithm>
 #include <cmath>
 
@@ -13,16 +13,16 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kPixelGateMax = 200;     // pixel: a fifth of the image
-constexpr double kCoastMax = 0.1;         // s without any LED that a prediction still counts as valid
-constexpr double kForgetAfter = 1;        // s without any LED after which nothing is predicted any more
-constexpr double kPinned = 1 * kDegree;   // two LEDs: yaw and pitch are held, not estimated; see report()
-constexpr double kOverturned = -0.2;      // R_LH(1,1): nobody's head
-constexpr int kPatience = 3;              // reports in which visible blobs do not fit before the head is sought anew
-constexpr double kSizeSigma = 0.5;        // of a blob's size, which is a whole number
-constexpr double kSizeRepeats = 50;       // reports that show the same rounding error
-constexpr double kSizeLearning = 0.02;    // per report: the LEDs' brightness changes with their cells, slowly
-constexpr double kRoundingPixels = 0.29;  // 1 / sqrt(12): a head at rest does not average its rounding errors away
+constexpr double kPixelGateMax = 200;         // pixel: a fifth of the image
+constexpr double kCoastMax = 0.1;             // s without any LED that a prediction still counts as valid
+constexpr double kForgetAfter = 1;            // s without any LED after which nothing is predicted any more
+constexpr double kPinned = 1 * kDegree;       // two LEDs: yaw and pitch are held, not estimated; see report()
+constexpr double kOverturned = -0.2;          // R_LH(1,1): nobody's head
+constexpr int kUnassignedMax = 3;             // reports with unassigned blobs before acquisition
+constexpr double kSizeSigma = 0.5;            // of a blob's size, which is a whole number
+constexpr double kSizeRepeats = 50;           // reports that show the same rounding error
+constexpr double kBrightnessLearning = 0.02;  // per report: the LEDs' brightness changes with their cells, slowly
+constexpr double kRoundingPixels = 0.29;      // 1 / sqrt(12): a head at rest does not average its rounding errors away
 
 class Scaat final : public TrackerBase {
  public:
@@ -46,12 +46,12 @@ class Scaat final : public TrackerBase {
     int seen = 0;
     if (running_) {
       filter_.predict(dt, view_);
-      // After a loss no blob has a name any more: what is nearest may be another LED, or a lamp.
-      const bool names_known = t - t_seen_ <= kCoastMax;
-      if (names_known) seen = correct_with(reading, C_LR, dt);
+      // After a loss the nearest blob may be another LED, or clutter: blobs are assigned anew, without the prediction.
+      const bool predictable = t - t_seen_ <= kCoastMax;
+      if (predictable) seen = correct_with(reading, C_LR, dt);
       view_ = view_of(seen);
-      strange_ = seen < 2 && reading.blob_count >= 2 ? strange_ + 1 : 0;
-      lost_ = !names_known || overturned(C_LR) || strange_ >= kPatience;
+      unassigned_ = seen < 2 && reading.blob_count >= 2 ? unassigned_ + 1 : 0;
+      lost_ = !predictable || overturned(C_LR) || unassigned_ >= kUnassignedMax;
       if (settings().leds.count == 2 && seen == 2) reconsider(C_LR);
     }
     if ((!running_ || lost_) && acquire(t, reading, C_LR)) seen = settings().leds.count;
@@ -77,7 +77,7 @@ class Scaat final : public TrackerBase {
     const double spread = pinhole().fx * std::sqrt(filter_.position_variance()) / filter_.X_RH().position.z();
     const double gate = std::min(kPixelGateMax, settings().thresholds.pixel_gate + 3 * spread);
     const Assignment blobs =
-        without_strangers(reading, expected, nearest_assignment(reading, std::span(expected).first(leds), gate));
+        without_clutter(reading, expected, nearest_assignment(reading, std::span(expected).first(leds), gate));
     const auto assigned = std::count_if(blobs.begin(), blobs.end(), [](int b) { return b >= 0; });
     const bool alone_in_view = assigned == 1;
     int seen = 0;
@@ -96,16 +96,16 @@ class Scaat final : public TrackerBase {
     return seen;
   }
 
-  /// A lamp that stands where it stood is no LED, however wide the gate has become. (The finder knows of two LEDs: it
-  /// would take a third for a lamp.)
-  [[nodiscard]] Assignment without_strangers(const Reading& reading,
-                                             const std::array<Eigen::Vector2d, kLedsMax>& expected,
-                                             Assignment blobs) const {
+  /// Clutter that stands where it stood is no LED, however wide the gate has become. (The pair follower knows of two
+  /// LEDs: a third would be clutter to it.)
+  [[nodiscard]] Assignment without_clutter(const Reading& reading,
+                                           const std::array<Eigen::Vector2d, kLedsMax>& expected,
+                                           Assignment blobs) const {
     if (settings().leds.count > 2) return blobs;
     for (std::size_t led = 0; led < 2; ++led) {
       if (blobs[led] < 0) continue;
       const Blob& blob = reading.blobs[static_cast<std::size_t>(blobs[led])];
-      if (follower_.is_stranger(blob, (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm())) blobs[led] = -1;
+      if (follower_.is_clutter(blob, (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm())) blobs[led] = -1;
     }
     return blobs;
   }
@@ -137,11 +137,11 @@ class Scaat final : public TrackerBase {
                     kSizeSigma * kSizeSigma * kSizeRepeats, settings().thresholds.gate_sigmas);
   }
   void learn_size(const Blob& blob) {
-    size_at_1m_ += kSizeLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
+    size_at_1m_ += kBrightnessLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
   }
 
   /// Entries (2,0) and (2,1) of R_LH are -yaw and pitch. Two LEDs see neither: both are held at zero and accounted for
-  /// in the report. Three see both: belief only pulls gently where they are not seen.
+  /// in the report. Three see both: the prior only pulls gently where they are not seen.
   void correct_upright(const Matrix3d& C_LR, double dt) {
     const bool two = settings().leds.count == 2;
     const double repeats = settings().thresholds.upright_time / std::max(dt, 1e-6);
@@ -160,8 +160,8 @@ class Scaat final : public TrackerBase {
     return (C_LR.row(1) * filter_.R_RH().col(1)).value() < kOverturned;
   }
 
-  /// A pair with a lamp in it moves as smoothly as a head: whether another pair looks more like one is asked all the
-  /// time.
+  /// A pair of which one blob is clutter moves as smoothly as a head. Only its cost tells, so it is compared with the
+  /// other pairs in every report.
   void reconsider(const Matrix3d& C_LR) {
     const PairFollower::Match better = follower_.reconsidered(reading_, pair_, C_LR);
     if (better.blob == pair_.blob) return;
@@ -184,7 +184,7 @@ class Scaat final : public TrackerBase {
     filter_.start(X_RH, covariance_R);
     running_ = true;
     view_ = HeadFilter::View::all;
-    strange_ = 0;
+    unassigned_ = 0;
   }
 
   bool acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
@@ -203,7 +203,7 @@ class Scaat final : public TrackerBase {
     return acquired.solved.found;
   }
 
-  // ---- what is said
+  // ---- what is reported
 
   void report(double t, int seen, const Matrix3d& C_LR, Estimate& result) {
     SolvedPose state;
@@ -229,7 +229,7 @@ class Scaat final : public TrackerBase {
     return two_led_covariance(constant, pinhole(), spacing_, X_LH.position, x_L.x() / across, x_L.y() / across);
   }
 
-  /// Tells the finder where the pair was and what else was in the image: lamps, should the head be lost.
+  /// Tells the pair follower where the pair was and what else was in the image: clutter, should the head be lost.
   void admitted(double t, bool valid) override {
     if (!valid || pair_.blob[0] < 0 || pair_.blob[1] < 0) return;
     pair_.pose.p_L = filter_.X_RH().position;  // only how far it is counts
@@ -241,7 +241,7 @@ class Scaat final : public TrackerBase {
   }
 
   PoseSolver solver_;
-  PairFollower follower_;  ///< finds two LEDs; the filter itself follows them
+  PairFollower follower_;  ///< acquires the pair and knows the clutter; the filter itself follows the LEDs
   HeadFilter filter_;
   Reading reading_;
   PairFollower::Match pair_;  ///< this report's blobs of the first two LEDs
@@ -250,8 +250,8 @@ class Scaat final : public TrackerBase {
   bool running_ = false;
   double t_seen_ = 0;
   HeadFilter::View view_ = HeadFilter::View::all;  ///< of the last report
-  bool lost_ = false;                              ///< the head must be sought anew
-  int strange_ = 0;                                ///< reports in a row whose blobs do not fit
+  bool lost_ = false;                              ///< the head must be acquired anew
+  int unassigned_ = 0;                             ///< reports in a row with missing LEDs and unassigned blobs
   double size_at_1m_ = 4;
 };
 

@@ -4,7 +4,7 @@
 // coordinates L (gravity.hpp), whether that report may be used, and how sure it is. Rules that hold for every tracker
 // except vrpn-compatible, which does what VRPN does:
 //   - Nothing is valid before the first data; until then the pose is NaN.
-//   - A valid pose is 0.2 to 5 m away and has moved since the last valid one by at most 5 m/s, or `reacquired` says
+//   - A valid pose is 0.2 to 5 m away. It has moved since the last valid one by at most 5 m/s, or `reacquired` says
 //   that
 //     it stands elsewhere for a reason (first lock, after a loss, or confirmed by a second report).
 //   - A report that is not valid repeats the last estimate (scaat: its prediction).
@@ -16,6 +16,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,7 +46,7 @@ struct LedLayout {
   }
 };
 
-/// What a tracker may know. Noise figures are beliefs: they set the covariance (and the gains of scaat).
+/// What a tracker may know. Noise figures are assumptions: they set the covariance (and the gains of scaat).
 struct TrackerSettings {
   LedLayout leds;
   FieldOfView fov;
@@ -54,7 +55,7 @@ struct TrackerSettings {
   double gravity_time_constant = 0.1;  ///< s, smoothing of the accelerometer
   double yaw_sigma = 9 * kDegree;      ///< how far heads turn: what two LEDs cannot see
   double pitch_sigma = 5 * kDegree;    ///< how far heads nod
-  Pose X_R1R2;                         ///< stereo: the second remote in coordinates of the first
+  std::optional<Pose> X_R1R2;          ///< the second remote in coordinates of the first; none: there is no second
   Thresholds thresholds = {};
 };
 
@@ -75,21 +76,38 @@ class Tracker {
   Tracker& operator=(const Tracker&) = delete;
 
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// One report of remote number `remote` (0; stereo: 0 or 1) at its time [s]. Any input is survived.
+  /// One report of remote number `remote` (0, or 1 where the tracker needs two) at its time [s]. Any input is survived.
   virtual const Report& update(double t, std::span<const double> channels, int remote) = 0;
   const Report& update(double t, std::span<const double> channels) { return update(t, channels, 0); }
   /// Asked at time t without new data: the last report, not news, and not valid once it is older than 0.5 s.
   virtual const Report& heartbeat(double t) = 0;
 };
 
-/// "geometric", "vrpn-compatible", "three-led", "scaat", "stereo".
-[[nodiscard]] const std::vector<std::string>& tracker_names();
+/// All that is known of a tracker before it is made: one row of the table of trackers.
+struct TrackerEntry {
+  std::string_view name;
+  std::unique_ptr<Tracker> (*make)(const TrackerSettings&) =
+      nullptr;                        ///< called only with settings that meet the needs
+  int remotes = 1;                    ///< that it needs: 1 or 2
+  int leds_min = 2;                   ///< LEDs that it needs
+  LedLayout leds = {};                ///< glasses that suit it, where a user names none
+  bool judged_with_triangle = false;  ///< validate also runs it as NAME/3, with the triangle of LEDs
+};
+using Trackers = std::span<const TrackerEntry>;
 
-/// Error(input) for settings that no tracker takes: see make_tracker.
+/// The trackers of this project: geometric, vrpn-compatible, three-led, scaat, stereo. Every function that looks for
+/// one by its name takes a table, so that others can be tried beside them (README: to add a tracker).
+[[nodiscard]] Trackers trackers();
+[[nodiscard]] std::vector<std::string> tracker_names(Trackers among = trackers());
+/// Error(input) for a name that is not in the table; it lists those that are.
+[[nodiscard]] const TrackerEntry& find_tracker(std::string_view name, Trackers among = trackers());
+
+/// Error(input) for settings that are not positive and finite, or first two LEDs less than 1 cm apart across.
 void check_settings(const TrackerSettings& settings);
 
-/// Error(input) for an unknown name, a layout that the tracker cannot use (first two LEDs less than 1 cm apart across,
-/// three-led with fewer than three LEDs) or settings that are not positive and finite.
-[[nodiscard]] std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerSettings& settings);
+/// Error(input) for an unknown name, settings that are not positive and finite, first two LEDs less than 1 cm apart
+/// across, or needs that are not met: too few LEDs, no second remote.
+[[nodiscard]] std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerSettings& settings,
+                                                    Trackers among = trackers());
 
 }  // namespace verisim::wii

@@ -1,5 +1,5 @@
-// What all honest trackers share: clock, gravity, admission and the rules of tracker.hpp. A tracker derives from this
-// and says where the head seems to be.
+// What all trackers but vrpn-compatible share: clock, gravity, admission and the rules of tracker.hpp. A tracker
+// derives from this and says where the head seems to be.
 #pragma once
 
 #include "engine/wii/admission.hpp"

@@ -1,4 +1,5 @@
-// One factory per tracker; make_tracker (tracker.hpp) is the door for everyone else.
+// One factory per tracker, for the table in tracker.cpp alone: it checks what a tracker needs. make_tracker
+// (tracker.hpp) is the door for everyone else.
 #pragma once
 
 #include <memory>
@@ -14,14 +15,16 @@ namespace verisim::wii {
 /// What VRPN's vrpn_Tracker_WiimoteHead computes, slips included (reference/wii/UPSTREAM.md).
 [[nodiscard]] std::unique_ptr<Tracker> make_vrpn_compatible(const TrackerSettings& settings);
 
-/// Three or four LEDs and one remote: yaw is told from distance. Error(input) for fewer than three.
+/// Three or four LEDs and one remote: yaw is told from distance.
+/// @pre three LEDs or more
 [[nodiscard]] std::unique_ptr<Tracker> make_three_led(const TrackerSettings& settings);
 
 /// An error-state Kalman filter that takes one measurement at a time, two LEDs or more (scaat.cpp).
 [[nodiscard]] std::unique_ptr<Tracker> make_scaat(const TrackerSettings& settings);
 
-/// Two remotes whose placement is known (TrackerSettings::X_R1R2). Reports come with the first remote's readings, in
-/// its levelled coordinates; with the second's while the first has been silent for 0.05 s.
+/// Two remotes. Reports come with the first remote's readings, in its levelled coordinates; with the second's while the
+/// first has been silent for 0.05 s.
+/// @pre settings.X_R1R2 says where the second remote stands
 [[nodiscard]] std::unique_ptr<Tracker> make_stereo(const TrackerSettings& settings);
 
 }  // namespace verisim::wii

@@ -24,7 +24,7 @@ struct Trajectory {
 /// heading, so that L has the axes of W.
 [[nodiscard]] Pose tilted_remote(double pitch, double roll);
 
-/// R_LH = Rz(roll) Ry(yaw) Rx(pitch): the order of the third row in PoseSolver's belief.
+/// R_LH = Rz(roll) Ry(yaw) Rx(pitch): the order that the prior of PoseSolver assumes.
 [[nodiscard]] Quaterniond head_rotation(double yaw, double pitch, double roll);
 
 /// A sum of sines: amplitude [m or rad] and frequency [Hz] of each, phase [rad].

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
+#include "engine/base/quantile.hpp"
 #include "engine/wii/validation_figures.hpp"
 
 namespace verisim::wii {
@@ -52,16 +53,16 @@ std::vector<SensorCase> make_sensor_cases() {
 
 /// What a tracker's name in the options means.
 struct Contender {
-  std::string base;
-  bool triangle = false;
+  const TrackerEntry& entry;
+  LedLayout leds;
 };
-Contender contender(const std::string& name) {
-  const bool three = name.size() > 2 && name.ends_with("/3");
-  const std::string base = three ? name.substr(0, name.size() - 2) : name;
-  return {base, three || base == "three-led"};
+Contender contender(std::string_view name, Trackers known) {
+  const bool triangle = name.ends_with("/3");
+  const TrackerEntry& entry = find_tracker(triangle ? name.substr(0, name.size() - 2) : name, known);
+  return {entry, triangle ? LedLayout::triangle() : entry.leds};
 }
 
-/// The second remote of stereo, in coordinates of the first.
+/// Where the second remote stands for a tracker that needs two, in coordinates of the first.
 Pose second_remote() {
   return {{kSecondRemoteSide, 0, 0}, rotation_from_vector({0, -pinned::atan2(kSecondRemoteSide, 1.2), 0})};
 }
@@ -80,13 +81,13 @@ struct Sensed {
   SensedReport report;
   int remote = 0;
 };
-std::vector<Sensed> sense_all(const RemoteSettings& settings, const Trajectory& path, bool stereo, std::uint64_t seed) {
+std::vector<Sensed> sense_all(const RemoteSettings& settings, const Trajectory& path, int remotes, std::uint64_t seed) {
   VirtualRemote first(settings, seed, path.name + "/first");
   VirtualRemote second(settings, seed, path.name + "/second");
   std::vector<Sensed> all;
   const auto count = static_cast<std::uint64_t>(path.duration * settings.rate);
   for (std::uint64_t k = 0; k < count; ++k) {
-    if (stereo) {
+    if (remotes == 2) {
       Situation s = path.at(second.report_time(k));
       s.X_WR = s.X_WR * second_remote();
       const SensedReport report = second.sense(k, s);
@@ -108,9 +109,7 @@ double median_update_ns(Tracker& tracker, const std::vector<Sensed>& all) {
       (void)tracker.update(all[j].report.t, all[j].report.channels, all[j].remote);
     blocks.push_back(std::chrono::duration<double, std::nano>(Clock::now() - begin).count() / kTimedBlock);
   }
-  if (blocks.empty()) return 0;
-  std::nth_element(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2), blocks.end());
-  return blocks[blocks.size() / 2];
+  return blocks.empty() ? 0 : quantile(blocks, 0.5);
 }
 
 }  // namespace
@@ -131,15 +130,15 @@ const SensorCase& sensor_case(const std::string& name) {
 
 ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
                            const ValidationOptions& options, std::vector<ErrorSample>* history) {
-  const Contender who = contender(tracker);
+  const Contender who = contender(tracker, options.known);
   TrackerSettings settings = options.tracker;
-  if (who.triangle && settings.leds.count < 3) settings.leds = LedLayout::triangle();
+  if (settings.leds.count < who.leds.count) settings.leds = who.leds;
   settings.fov = sensor.settings.fov;
-  settings.X_R1R2 = second_remote();
+  if (who.entry.remotes == 2) settings.X_R1R2 = second_remote();
   const std::vector<Sensed> all =
-      sense_all(sensor_settings(sensor, path, settings.leds), path, who.base == "stereo", options.seed);
+      sense_all(sensor_settings(sensor, path, settings.leds), path, who.entry.remotes, options.seed);
 
-  const std::unique_ptr<Tracker> judged = make_tracker(who.base, settings);
+  const std::unique_ptr<Tracker> judged = make_tracker(who.entry.name, settings, options.known);
   ValidationFigures figures;
   for (const Sensed& s : all) {
     const Report& report = judged->update(s.report.t, s.report.channels, s.remote);
@@ -151,15 +150,17 @@ ValidationRow validate_one(const std::string& tracker, const Trajectory& path, c
   row.tracker = tracker;
   row.trajectory = path.name;
   row.sensor = sensor.name;
-  if (options.measure_time) row.update_ns = median_update_ns(*make_tracker(who.base, settings), all);
+  if (options.measure_time)
+    row.update_ns = median_update_ns(*make_tracker(who.entry.name, settings, options.known), all);
   return row;
 }
 
 std::vector<ValidationRow> validate(const ValidationOptions& options) {
   std::vector<std::string> trackers = options.trackers;
   if (trackers.empty()) {
-    trackers = tracker_names();
-    trackers.emplace_back("scaat/3");
+    trackers = tracker_names(options.known);
+    for (const TrackerEntry& entry : options.known)
+      if (entry.judged_with_triangle) trackers.push_back(fmt::format("{}/3", entry.name));
   }
   std::vector<Trajectory> paths = options.recorded;
   if (paths.empty() && options.trajectories.empty()) paths = trajectories();

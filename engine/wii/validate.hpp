@@ -1,4 +1,4 @@
-// Trackers against the virtual Wii Remote: errors, availability, latency, honesty of the covariance, cost.
+// Trackers against the virtual Wii Remote: errors, availability, latency, consistency of the covariance, time.
 #pragma once
 
 #include <string>
@@ -51,11 +51,12 @@ struct ValidationRow {
 };
 
 struct ValidationOptions {
-  std::vector<std::string> trackers;      ///< empty: all, and scaat/3
+  std::vector<std::string> trackers;      ///< empty: all, and NAME/3 of those that say so (TrackerEntry)
   std::vector<std::string> trajectories;  ///< empty: all, unless motions are recorded
   std::vector<std::string> sensors;       ///< empty: ideal and wiimote
+  Trackers known = wii::trackers();       ///< the table that the names above are looked up in
   std::uint64_t seed = 1;
-  TrackerSettings tracker;           ///< of every tracker; LEDs come from the tracker's own glasses
+  TrackerSettings tracker;           ///< of every tracker; each adds the LEDs and the second remote that it needs
   std::vector<Trajectory> recorded;  ///< further motions; alone, if no others are named
   bool measure_time = true;
 };
@@ -68,8 +69,8 @@ struct ErrorSample {
   double bound_95 = 0;  ///< m: longest half axis of the ellipsoid that should hold 95 % of the errors
 };
 
-/// One run of a tracker; "NAME/3" is that tracker with three LEDs. Glasses are two LEDs, or the triangle for three-led
-/// and NAME/3; stereo gets a second remote 0.5 m beside the first, turned towards the head.
+/// One run of a tracker over its own glasses (TrackerEntry::leds); "NAME/3" is that tracker with the triangle of LEDs.
+/// One that needs two remotes gets a second 0.5 m beside the first, turned towards the head.
 [[nodiscard]] ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
                                          const ValidationOptions& options, std::vector<ErrorSample>* history = nullptr);
 /// Every combination, trackers innermost: about 1 ms per simulated second each. Error(input) for a name that is not

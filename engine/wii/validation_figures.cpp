@@ -107,8 +107,7 @@ ErrorSample error_of(const SensedReport& sensed, const Report& report) {
   ErrorSample sample{sensed.t, report.valid, 0, 0};
   if (!report.valid) return sample;
   sample.error = (report.pose.position - sensed.X_LH.position).norm();
-  Eigen::SelfAdjointEigenSolver<Matrix3d> axes;
-  axes.computeDirect(report.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(report.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
   sample.bound_95 = std::sqrt(kChiSquare95 * std::max(0.0, axes.eigenvalues().maxCoeff()));
   return sample;
 }

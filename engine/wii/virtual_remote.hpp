@@ -33,14 +33,14 @@ struct Led {
   double power = 1;                 ///< of a fresh one, 1 m away: blob size 4
 };
 
-/// A ball that hides LEDs and lamps behind it; the wearer's own head is one.
+/// An occluder: a ball that hides LEDs and lamps behind it. The wearer's own head is one.
 struct Ball {
   Vector3d centre = Vector3d::Zero();  ///< m, W (or H, if on_head)
   double radius = 0;                   ///< m
   bool on_head = false;
 };
 
-/// A light that is not an LED.
+/// A light that is not an LED: clutter in the image.
 struct Lamp {
   Vector3d p_W = Vector3d::Zero();  ///< m
   double power = 1;

@@ -26,8 +26,8 @@ struct EllipseEllipse {
     c.pairing = Pairing::axis_axis;
     c.field = NormalField::about_line;
     c.pin = opposite(recognizing::hole_of(a.role, a.shape.major_radius, b.role, b.shape.major_radius));
-    c.guide = opposite(c.pin);
-    c.pushes_only = false;
+    c.normal_source = opposite(c.pin);
+    c.unilateral = false;
     c.a = {a.shape.center, a.shape.normal, a.shape.major_radius, a.half_length, 0};
     c.b = {b.shape.center, b.shape.normal, b.shape.major_radius, b.half_length, 0};
     c.clearance = std::abs(c.a.radius - c.b.radius);
@@ -39,7 +39,15 @@ namespace {
 
 // Step 2: its place in the list, and its cell in the drawing.
 using Extended = Recognizers::With<EllipseEllipse>;
-constexpr std::size_t kEllipse = Shapes<Entity>::index_of<Ellipse>();
+template <std::size_t I = 0>
+constexpr std::size_t number_of_ellipse() {
+  if constexpr (std::is_same_v<std::variant_alternative_t<I, Entity>, Bounded<Ellipse>>) {
+    return I;
+  } else {
+    return number_of_ellipse<I + 1>();
+  }
+}
+constexpr std::size_t kEllipse = number_of_ellipse();
 static_assert(drawing_of<Recognizers, Entity>()[kEllipse][kEllipse] == '-');
 static_assert(drawing_of<Extended, Entity>()[kEllipse][kEllipse] == 'O');
 

@@ -101,7 +101,7 @@ TEST(AlignmentByType, OfAPinStaysOneWhileThePinIsFree) {
   EXPECT_NEAR(by_type(peg(), {{0.005 + 0.0009, 0, 0}, Quaterniond::Identity()}), 1 - 0.9 / 4.5, tolerance(1e-12));
 }
 
-// Section 9.1: the same degree means different things.
+// Section 9.1: a degree of tilt has a different meaning for each kind of constraint.
 TEST(AlignmentByType, OneDegreeCostsALongPinMoreThanAShortOneAndPlanesHardly) {
   const double fit = 0.07499;  // 10 um
   const double needle = by_type(peg(fit, 0.2), tilted(kDegree));
@@ -138,8 +138,8 @@ TEST(AlignmentByType, OfAPinBesideItsHoleBeginsAtTheRimAndIsWholeAVoxelBehindIt)
   }
 }
 
-// What stands freely before its hole touches nothing, so nothing may hold it there; that ends a tenth of a voxel
-// beside.
+// A pin that stands freely before its hole touches nothing, so no contact may hold it there. That ends a tenth of a
+// voxel beside the hole.
 TEST(AlignmentByType, OfAPinThatStandsFreelyBeforeItsHoleIsWhole) {
   const auto before = [](double offset) { return by_type(peg(), {{offset, 0, 0.301}, Quaterniond::Identity()}); };
   EXPECT_EQ(before(0), 1);
@@ -149,8 +149,8 @@ TEST(AlignmentByType, OfAPinThatStandsFreelyBeforeItsHoleIsWhole) {
 }
 
 // A pin of 70 mm covers part of a hole of 75 mm up to 145 mm between their axes.
-TEST(WhollyBeside, BeginsWhereTheEndCoversNothingOfTheHole) {
-  const auto at = [](const Pose& X) { return wholly_beside(peg(), misalignment(peg(), X), {.voxel_size = 0.0045}); };
+TEST(ClearOfHole, BeginsWhereTheEndCoversNoPartOfTheHole) {
+  const auto at = [](const Pose& X) { return clear_of_hole(peg(), misalignment(peg(), X), {.voxel_size = 0.0045}); };
   for (const double offset : {0.0, 0.005, 0.07, 0.1449, 0.146, 0.149, 0.15, 1.0}) {
     EXPECT_NEAR(at({{offset, 0, 0.3}, Quaterniond::Identity()}), std::clamp((offset - 0.145) / 0.0045, 0.0, 1.0),
                 tolerance(1e-12));

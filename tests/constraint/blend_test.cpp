@@ -94,7 +94,7 @@ TEST(ConstraintForce, OfContradictingConstraintsIsTheirCompromise) {
   const ConstraintForce c = solve({pair(-0.05, -0.055), pair(0.05, 0.055)}, Pose());
   EXPECT_LE(c.X_AB_target.position.norm(), tolerance(1e-9));
   EXPECT_LE(c.on_b.force.norm(), tolerance(1e-6));
-  EXPECT_NEAR(c.unsatisfied, std::sqrt(2 * 0.005 * 0.005), tolerance(1e-6));
+  EXPECT_NEAR(c.residual, std::sqrt(2 * 0.005 * 0.005), tolerance(1e-6));
 }
 
 TEST(Blended, MixesByAlignment) {

@@ -6,7 +6,7 @@
 #include "engine/constraint/blend.hpp"
 #include "engine/constraint/recognition.hpp"
 #include "engine/constraint/regression.hpp"
-#include "engine/constraint/restore_run.hpp"
+#include "engine/constraint/restore_batch.hpp"
 #include "tests/constraint/contacts.hpp"
 #include "tests/constraint/parts.hpp"
 #include "tests/support/broken.hpp"
@@ -36,11 +36,11 @@ TEST(AlignmentDeathTest, JudgesAConstraintByAVoxel) {
 TEST(AlignmentDeathTest, OnlyAPinStandsBesideAHole) {
   const Constraint c = pin_in_hole();
   const Misalignment m = misalignment(c, Pose());
-  EXPECT_BROKEN(wholly_beside(Constraint(), m, {}), "round.kind != ConstraintKind::none");
+  EXPECT_BROKEN(clear_of_hole(Constraint(), m, {}), "round.kind != ConstraintKind::none");
   Constraint planes = c;
   planes.pairing = Pairing::plane_plane;
-  EXPECT_BROKEN(wholly_beside(planes, m, {}), "round.pairing == Pairing::axis_axis");
-  EXPECT_BROKEN(wholly_beside(c, m, {0, 10}), "is_positive(scales.voxel_size)");
+  EXPECT_BROKEN(clear_of_hole(planes, m, {}), "round.pairing == Pairing::axis_axis");
+  EXPECT_BROKEN(clear_of_hole(c, m, {0, 10}), "is_positive(scales.voxel_size)");
 }
 
 TEST(RestorationDeathTest, NeedsAPlaceADirectionAndAShare) {
@@ -56,39 +56,26 @@ TEST(RestorationDeathTest, NeedsAPlaceADirectionAndAShare) {
   EXPECT_BROKEN(activate(broken, Pose(), 1), "c.field == NormalField::about_point || is_unit(active.direction)");
 }
 
-TEST(RestorationDeathTest, ByNameTakesUnitVectorsAndFiniteForces) {
-  const Vector3d o = Vector3d::Zero();
-  const Vector3d nan = Vector3d::Constant(kNaN);
-  EXPECT_BROKEN(restore_cylindrical(nan, kUp, o, o, 1), "is_finite(c)");
-  EXPECT_BROKEN(restore_cylindrical(o, 2 * kUp, o, o, 1), "is_unit(v)");
-  EXPECT_BROKEN(restore_cylindrical(o, kUp, nan, o, 1), "is_finite(x)");
-  EXPECT_BROKEN(restore_cylindrical(o, kUp, o, nan, 1), "is_finite(f)");
-  EXPECT_BROKEN(restore_cylindrical(o, kUp, o, o, 2), "is_fraction(alpha)");
-  EXPECT_BROKEN(restore_planar(o, o, 1), "is_unit(n)");
-  EXPECT_BROKEN(restore_planar(kUp, nan, 1), "is_finite(f)");
-  EXPECT_BROKEN(restore_planar(kUp, o, -1), "is_fraction(alpha)");
-}
-
-TEST(RestorationDeathTest, OfARunNeedsItsColumns) {
+TEST(RestorationDeathTest, OfABatchNeedsItsColumns) {
   test::Contacts contacts;
   contacts.add({0, 0, 0}, {0, 0, 1}, 1, 1);
   const ContactColumns c = contacts.columns();
   const ActiveConstraint active = activate(pin_in_hole(), Pose(), 1);
-  EXPECT_BROKEN(restore_run({c.x, nullptr, c.z, c.fx, c.fy, c.fz, 1}, active),
-                "run.count == 0 || (run.x != nullptr && run.y != nullptr && run.z != nullptr)");
-  EXPECT_BROKEN(restore_run({c.x, c.y, c.z, c.fx, c.fy, nullptr, 1}, active),
-                "run.count == 0 || (run.fx != nullptr && run.fy != nullptr && run.fz != nullptr)");
+  EXPECT_BROKEN(restore_batch({c.x, nullptr, c.z, c.fx, c.fy, c.fz, 1}, active),
+                "batch.count == 0 || (batch.x != nullptr && batch.y != nullptr && batch.z != nullptr)");
+  EXPECT_BROKEN(restore_batch({c.x, c.y, c.z, c.fx, c.fy, nullptr, 1}, active),
+                "batch.count == 0 || (batch.fx != nullptr && batch.fy != nullptr && batch.fz != nullptr)");
   ActiveConstraint too_much = active;
   too_much.alpha = 1.5;
-  EXPECT_BROKEN(restore_run({c.x, c.y, c.z, c.fx, c.fy, c.fz, 1}, too_much), "is_fraction(active.alpha)");
-  restore_run({nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, 0}, active);
+  EXPECT_BROKEN(restore_batch({c.x, c.y, c.z, c.fx, c.fy, c.fz, 1}, too_much), "is_fraction(active.alpha)");
+  restore_batch({nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, 0}, active);
 }
 
 TEST(ReductionDeathTest, NeedsAnAlphaForEachConstraint) {
   const ActiveConstraint active = activate(pin_in_hole(), Pose(), 1);
   const std::array<const ActiveConstraint*, 2> holding = {&active, &active};
   const std::array<double, 1> alpha = {1};
-  EXPECT_BROKEN(restore_common(holding, alpha, kUp, kUp), "holding.size() == alpha.size()");
+  EXPECT_BROKEN(restore_common(holding, alpha, kUp, kUp), "active.size() == alpha.size()");
 }
 
 TEST(ConstraintLinkDeathTest, NeedsAVoxelSizeAPoseAndColumns) {

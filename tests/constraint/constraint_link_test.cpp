@@ -46,10 +46,10 @@ TEST(ConstraintLink, LetsAPinSlideAndTurn) {
   EXPECT_EQ(r.restored, 2U);
 }
 
-// The rim, all ways: a pin that stands wholly beside the hole is held by the top alone; one that is a voxel deep inside
-// the clearance is not held by it, though its edge still passes the rim; a collar that sits on the rim is held by the
-// top and by the wall at once.
-TEST(ConstraintLink, KnowsWhatHoldsAtARim) {
+// The constraints at a rim. A pin that is clear of the hole: the top alone. A pin that is a voxel deep in the hole,
+// inside the clearance: the wall alone, though its edge still passes the rim. A collar that sits on the rim: top and
+// wall.
+TEST(ConstraintLink, KnowsTheActiveConstraintsAtARim) {
   const EntitySets a = test::block_with_hole();
   const EntitySets straight = test::pin();
   const EntitySets collared = test::collared_pin();
@@ -76,9 +76,9 @@ TEST(ConstraintLink, KnowsWhatHoldsAtARim) {
   EXPECT_LE((seated.force(0) - Vector3d(-3, 0, 5)).norm(), tolerance(kFloat));
 }
 
-// A pin that covers part of the hole and stands on its rim, by more than a tenth of a voxel: nothing of what holds it
-// up is taken, and nothing of what guides it in, in the rim's voxels and in those beside them, which do not know of the
-// hole.
+// A pin that covers part of the hole and stands on its rim, by more than a tenth of a voxel: neither the force that
+// holds it up nor the force that guides it in is changed. Also not in the voxels beside the rim, which do not know of
+// the hole.
 TEST(ConstraintLink, LeavesAPinThatStandsOnTheRimToTheVoxels) {
   const EntitySets a = test::block_with_hole();
   const EntitySets b = test::pin();
@@ -266,17 +266,17 @@ class AtTheRim {
   Vector3d before_;
 };
 
-// No force jumps while a pin moves from wholly beside its hole to over it, goes in and meets its axis. f' is affine in
+// No force jumps while a pin that is clear of its hole moves over it, goes in and reaches its axis. f' is affine in
 // each alpha, and its slope there, f with one normal kept less f without, is no longer than f. So |df'| / |f| is at
 // most the sum of all |d alpha|, plus the angle by which a kept normal turns. With the factors of alignment.hpp, each
 // between 0 and 1, a product's slope is at most the sum of the slopes of its factors:
-//   planar  (1 - tan theta) wholly_beside      beside: 1/s, while the axes are 145 to 149.5 mm apart
+//   planar  (1 - tan theta) clear_of_hole      beside: 1/s, while the axes are 145 to 149.5 mm apart
 //   round   (1 - x/s) engagement               x/s: 1/s from the offset, within 9.5 mm; tan theta / s from the depth
 //                                              engagement: 1/s from the depth
 //           or, if larger, 1 - x / (s/10)      10/s from the offset; reached only before the hole
 // Forces of 6 N are floats: each is off by less than 2^-22 N, and a step of 5 um takes two of them.
 TEST(ConstraintLink, ChangesForcesContinuouslyAtTheRim) {
-  constexpr double kSteepest = 1 / 0.0045;        // of wholly_beside, x / s and engagement alike
+  constexpr double kSteepest = 1 / 0.0045;        // of clear_of_hole, x / s and engagement alike
   constexpr double kTurn = 1 / (0.075 - 0.0095);  // of a normal, by the arm from the axis
   constexpr double kRounding = 2 * 0x1p-22 / (6 * 5e-6);
   for (const FeatureSetId set_a : {block::wall, block::top, block::rim}) {

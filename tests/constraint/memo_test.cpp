@@ -1,4 +1,4 @@
-// The memo: what is recognized once is not recognized again, and what finds no room is still right.
+// The memo: what is recognized once is not recognized again, and what cannot be stored is still right.
 #include "engine/constraint/memo.hpp"
 
 #include <gtest/gtest.h>
@@ -81,44 +81,44 @@ TEST(ConstraintMemo, AtARimMergesWallAndRim) {
   EXPECT_EQ(memo.constraint(rim.constraint[1]).kind, ConstraintKind::other);
 }
 
-/// How many fits the meeting of the two ends hands over to, found by way of one pair of voxels.
-std::size_t handed_over(const EntitySets& a, const EntitySets& b, FeatureSetId set_a, FeatureSetId set_b,
-                        Reduction reduction = Reduction::common_freedom) {
+/// Number of gates of the planar constraint between the two ends, found through one pair of voxels.
+std::size_t gate_count(const EntitySets& a, const EntitySets& b, FeatureSetId set_a, FeatureSetId set_b,
+                       Reduction reduction = Reduction::common_freedom) {
   ConstraintMemo memo(a, b, reduction, {});
   const Candidates found = memo.candidates(memo.look_up(set_a, set_b));
   std::size_t fits = 0;
   for (std::size_t i = 0; i < found.count; ++i) {
-    for (const std::uint16_t round : memo.hands_over_to(found.constraint[i])) {
+    for (const std::uint16_t gate : memo.gates_of(found.constraint[i])) {
       EXPECT_EQ(memo.constraint(found.constraint[i]).kind, ConstraintKind::planar);
-      EXPECT_EQ(memo.constraint(round).kind, ConstraintKind::cylindrical);
+      EXPECT_EQ(memo.constraint(gate).kind, ConstraintKind::cylindrical);
       ++fits;
     }
   }
   return fits;
 }
 
-// End on top hands over to the fit, once, whether or not the two voxels know of it; a collar does not.
-TEST(ConstraintMemo, HandsOverBetweenConvexRimsOnly) {
+// The fit gates the end on the top, once, whether or not the two voxels know of the fit. A collar is not gated.
+TEST(ConstraintMemo, GatesBetweenConvexRimsOnly) {
   const EntitySets a = test::block_with_hole();
   const EntitySets straight = test::pin();
   const EntitySets collared = test::collared_pin();
   for (const FeatureSetId set_a : {block::top, block::rim}) {
     for (const FeatureSetId set_b : {pin::end, pin::edge}) {
-      EXPECT_EQ(handed_over(a, straight, set_a, set_b), 1U);
-      EXPECT_EQ(handed_over(a, collared, set_a, set_b), 0U);
+      EXPECT_EQ(gate_count(a, straight, set_a, set_b), 1U);
+      EXPECT_EQ(gate_count(a, collared, set_a, set_b), 0U);
     }
   }
-  EXPECT_EQ(handed_over(a, straight, block::top, pin::end, Reduction::exactly_one), 0U);
+  EXPECT_EQ(gate_count(a, straight, block::top, pin::end, Reduction::exactly_one), 0U);
 }
 
 // Two holes in one top: the pin's end may cover either.
-TEST(ConstraintMemo, HandsOverToEveryHoleThatFits) {
+TEST(ConstraintMemo, IsGatedByEveryHoleThatFits) {
   const Vector3d there(0.3, 0, 0);
   const std::vector<Entity> plate = {test::plane(test::kZ, {0, 0, 0.1}), test::cylinder(0.075, /*hole=*/true),
                                      test::cylinder(0.075, /*hole=*/true, 0.1, there),
                                      test::cylinder(0.02, /*hole=*/true, 0.1, -there)};
   const std::vector<std::vector<std::uint32_t>> sets = {{}, {0}, {0, 1}, {0, 2}, {0, 3}};
-  EXPECT_EQ(handed_over(EntitySets(plate, sets), test::pin(), 1, pin::end), 2U);
+  EXPECT_EQ(gate_count(EntitySets(plate, sets), test::pin(), 1, pin::end), 2U);
 }
 
 TEST(ConstraintMemo, DoesNotMindAnEntityThatTouchesNoVoxel) {
@@ -147,7 +147,6 @@ TEST(ConstraintMemo, FallsBackForThousandsOfFreeformFaces) {
     EXPECT_EQ(memo.candidates(memo.look_up(id, pin::side)).count, 0);
   }
   EXPECT_EQ(allocations, before);
-  EXPECT_EQ(memo.constraints_known(), 0U);
   EXPECT_EQ(memo.counts().misses_null, kFaces + 1);
   EXPECT_EQ(memo.counts().overflows, kFaces + 1 - MemoLimits().pairs);
 }
@@ -180,6 +179,27 @@ TEST(ConstraintMemo, WithoutRoomForConstraintsFindsNoneAndSaysSo) {
   ConstraintMemo memo(a, b, Reduction::common_freedom, {}, {.pairs = 100, .constraints = 0});
   EXPECT_EQ(memo.candidates(memo.look_up(block::wall, pin::side)).count, 0);
   EXPECT_GT(memo.counts().overflows, 0U);
+}
+
+// Nine planes that lean differently meet one: nine constraints, one more than a pair of sets has room for.
+TEST(ConstraintMemo, CountsAConstraintThatItsPairOfSetsHasNoRoomFor) {
+  const auto plane = [](double lean) {
+    const Vector3d normal = Vector3d(lean, 0, 1).normalized();
+    return Bounded<Plane>{{Vector3d::Zero(), normal, Vector3d::UnitY()}, 0.1};
+  };
+  std::vector<Entity> leaning;
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i <= Candidates::kMax; ++i) {
+    leaning.emplace_back(plane(0.1 * i));
+    all.push_back(i);
+  }
+  const std::vector<std::vector<std::uint32_t>> sets_a = {{}, all};
+  const std::vector<std::vector<std::uint32_t>> sets_b = {{}, {0}};
+  const EntitySets a(leaning, sets_a);
+  const EntitySets b({plane(0)}, sets_b);
+  ConstraintMemo memo(a, b, Reduction::common_freedom, {});
+  EXPECT_EQ(memo.candidates(memo.look_up(1, 1)).count, Candidates::kMax);
+  EXPECT_EQ(memo.counts().overflows, 1U);
 }
 
 TEST(ConstraintMemo, AllocatesNothingAfterItIsMade) {

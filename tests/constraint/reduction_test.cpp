@@ -11,12 +11,12 @@ namespace {
 
 using test::tolerance;
 
-ActiveConstraint flat(const Vector3d& normal, double alpha, bool pushes_only = false) {
+ActiveConstraint flat(const Vector3d& normal, double alpha, bool unilateral = false) {
   ActiveConstraint c;
   c.kind = ConstraintKind::planar;
   c.direction = normal;
   c.alpha = alpha;
-  c.pushes_only = pushes_only;
+  c.unilateral = unilateral;
   return c;
 }
 

@@ -30,7 +30,7 @@ std::vector<ActiveConstraint> all_fields(double alpha) {
     c.along = field == NormalField::about_ring ? 0.5 : -0.6;
     c.across = 0.8;
     all.push_back(c);
-    c.pushes_only = true;
+    c.unilateral = true;
     all.push_back(c);
   }
   return all;
@@ -96,9 +96,9 @@ TEST(RestoreConical, KeepsTheSeatAndFreesTheWayOut) {
   c.kind = ConstraintKind::conical;
   c.pairing = Pairing::axis_axis;
   c.field = NormalField::about_cone;
-  c.guide = Side::a;
+  c.normal_source = Side::a;
   c.pin = Side::b;
-  c.pushes_only = true;
+  c.unilateral = true;
   c.clearance = 0;
   c.a = c.b = {Vector3d::Zero(), kZ, 0.05, 0.02, pinned::tan(h)};
   const ActiveConstraint seat = activate(c, Pose(), 1);

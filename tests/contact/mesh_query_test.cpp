@@ -11,7 +11,9 @@ namespace {
 ContactList contacts_of(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_AB,
                         const Vector3d& origin = Vector3d::Zero(), std::size_t capacity = 1000) {
   ContactList contacts(capacity);
-  query(MeshTree(a), MeshTree(b), X_AB, origin, contacts);
+  QueryCost cost;
+  query(MeshTree(a), MeshTree(b), X_AB, origin, contacts, cost);
+  EXPECT_TRUE(cost.left_out == 0 || contacts.size == capacity) << "left out while there was room";
   return contacts;
 }
 
@@ -83,8 +85,12 @@ TEST(MeshQuery, FindsNothingApartAndNothingAtAPoseThatIsNotFinite) {
   EXPECT_EQ(contacts_of(kPlate, kBox, shifted(0, 0, std::nan(""))).size, 0U);
 }
 
-TEST(MeshQuery, KeepsToTheListsCapacity) {
-  EXPECT_EQ(contacts_of(kPlate, kBox, shifted(0.01, 0.02, -0.001), Vector3d::Zero(), 3).size, 3U);
+TEST(MeshQuery, KeepsToTheListsCapacityAndCountsTheRest) {
+  ContactList contacts(3);
+  QueryCost cost;
+  query(MeshTree(kPlate), MeshTree(kBox), shifted(0.01, 0.02, -0.001), Vector3d::Zero(), contacts, cost);
+  EXPECT_EQ(contacts.size, 3U);
+  EXPECT_EQ(cost.left_out, 1U) << "a box has four corners";
 }
 
 TEST(MeshQuery, LeavesOutTrianglesWithoutArea) {

@@ -9,6 +9,7 @@
 #include "engine/base/random.hpp"
 #include "tests/contact/allocations.hpp"
 #include "tests/contact/naive_voxels.hpp"
+#include "tests/contact/query_plainly.hpp"
 
 namespace verisim {
 namespace {
@@ -90,7 +91,7 @@ Compared compare_targets(const VoxelBody& a, const VoxelBody& b, std::uint64_t p
     SCOPED_TRACE(seed);
     const Pose X_AB = random_pose(seed);
     QueryCost plain_cost;
-    query_plainly(a.voxmap, b.shell, X_AB, plain, plain_cost);
+    test::query_plainly(a.voxmap, b.shell, X_AB, plain, plain_cost);
     result.in_contact += plain.size > 0 ? 1 : 0;
     std::uint64_t points = std::numeric_limits<std::uint64_t>::max();
     for (const std::string& target : simd_targets()) {
@@ -232,7 +233,7 @@ TEST(ContactQuery, FindsNothingForAPoseThatIsNotFinite) {
   for (const double odd : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
     query(block.voxmap, pin.shell, {{odd, 0, 0}, Quaterniond::Identity()}, list, cost);
     EXPECT_EQ(list.size, 0U);
-    query_plainly(block.voxmap, pin.shell, {{0, -odd, 0}, Quaterniond::Identity()}, list, cost);
+    test::query_plainly(block.voxmap, pin.shell, {{0, -odd, 0}, Quaterniond::Identity()}, list, cost);
     EXPECT_EQ(list.size, 0U);
   }
 }

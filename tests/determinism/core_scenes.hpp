@@ -54,7 +54,7 @@ inline Scene exact_scene(std::vector<Part> standing, std::vector<Part> moving, d
                          double voxel_size) {
   Scene scene;
   scene.parameters.duration = 0.6;
-  scene.parameters.hybrid = Hybrid::exact;
+  scene.parameters.hybrid = hybrid::exact;
   for (std::vector<Part>* parts : {&standing, &moving}) {
     BodyDescription& body = scene.bodies.emplace_back();
     body.name = parts == &standing ? "standing" : "moving";
@@ -98,10 +98,10 @@ inline std::vector<CoreScene> core_scenes() {
   return {{"pin_in_hole", [=] { return pin(Integrator::semi_implicit); }},
           {"pin_in_hole_implicit", [=] { return pin(Integrator::implicit); }},
           {"pin_restored",
-           [] { return hybrid_pin(Hybrid::restore, Integrator::semi_implicit, AlignmentMeasure::by_type); }},
+           [] { return hybrid_pin(hybrid::restore, Integrator::semi_implicit, AlignmentMeasure::by_type); }},
           {"pin_restored_implicit",
-           [] { return hybrid_pin(Hybrid::restore, Integrator::implicit, AlignmentMeasure::pavlik); }},
-          {"pin_blended", [] { return hybrid_pin(Hybrid::blend, Integrator::semi_implicit, AlignmentMeasure::faas); }},
+           [] { return hybrid_pin(hybrid::restore, Integrator::implicit, AlignmentMeasure::pavlik); }},
+          {"pin_blended", [] { return hybrid_pin(hybrid::blend, Integrator::semi_implicit, AlignmentMeasure::faas); }},
           {"pin_exact", exact_pin},
           {"cone_exact", exact_cone},
           {"two_pins_exact", exact_two_pins},
@@ -126,7 +126,7 @@ inline CoreResult run_core(const CoreScene& scene, unsigned threads) {
   }
   result.hash = simulation.state_hash();
   result.collision_frames = simulation.collision_frames();
-  const Simulation::Totals& totals = simulation.totals();
+  const Totals& totals = simulation.totals();
   for (std::size_t kind = 1; kind < totals.constraint_frames.size(); ++kind)
     result.constrained_frames += totals.constraint_frames[kind];
   return result;

@@ -101,38 +101,13 @@ TEST(Hardware, ThatNothingDrivesStaysAtHomeAndHoldsNothing) {
   EXPECT_EQ(omni->duration(), 0);
 }
 
-TEST(Drive, ReachesTheHardwareThroughItsFilters) {
-  const auto hardware = make_hardware(phantom_omni("omni"), nullptr);
+TEST(Hardware, IsDrivenThroughItsFilters) {
+  const auto hardware = make_hardware(phantom_omni("omni"), still_at({{0.0055, 0, 0}, Quaterniond::Identity()}));
   const auto device = make_translate(make_scale(hardware, 4), {0, 0, 1});
-  drive(*device, still_at({{0.0055, 0, 0}, Quaterniond::Identity()}));
   EXPECT_TRUE(device->driven());
   device->sample(0, 0, 1e-3);
   EXPECT_TRUE(device->reading().button);
   EXPECT_LE((device->reading().handle.position - Vector3d(0.022, 0, 1)).norm(), tolerance(1e-15));
-}
-
-TEST(Drive, RefusesASourceAndWhatIsDrivenAlready) {
-  const auto omni = make_hardware(phantom_omni("omni"), still_at({}));
-  expect_refused(
-      [&] {
-        drive(*omni, still_at({}));
-        return 0;
-      },
-      "'omni' is driven already");
-  const auto trace = still_at({});
-  expect_refused(
-      [&] {
-        drive(*trace, still_at({}));
-        return 0;
-      },
-      "'trace' is a source itself");
-  const auto scaled = make_scale(trace, 2);
-  expect_refused(
-      [&] {
-        drive(*scaled, still_at({}));
-        return 0;
-      },
-      "'trace' is a source itself");
 }
 
 TEST(Hardware, RefusesADescriptionThatIsNone) {

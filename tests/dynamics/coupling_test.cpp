@@ -43,7 +43,7 @@ TEST(Coupling, IsCriticallyDamped) {
 // Released at rest 10 mm from its target, a critically damped body follows d0 (1 + w t) e^(-w t). Both integrators are
 // of first order: their error is bounded by a constant times w dt d0, here 1e-2 d0 * 0.5 (0.37 is the largest slope in
 // w t).
-class Convergence : public testing::TestWithParam<StepWork (*)(RigidBody&, const Loads&, double)> {};
+class Convergence : public testing::TestWithParam<StepWork (*)(RigidBody&, const Loads&, double, double)> {};
 TEST_P(Convergence, FollowsTheClosedFormWithoutOvershoot) {
   const double dt = 1e-3, d0 = 0.01, w = 10;  // w = sqrt(k/m)
   RigidBody body = brick(2, {0.1, 0.2, 0.3});
@@ -51,7 +51,7 @@ TEST_P(Convergence, FollowsTheClosedFormWithoutOvershoot) {
   body.p_WC = {-d0, 0, 0};
   double worst = 0;
   for (int i = 1; i <= 3000; ++i) {
-    (void)GetParam()(body, held(c, body, resting_at({})), dt);
+    (void)GetParam()(body, held(c, body, resting_at({})), dt, 1);
     const double t = i * dt, expected = -d0 * (1 + w * t) * std::exp(-w * t);
     worst = std::max(worst, std::abs(body.p_WC.x() - expected));
     ASSERT_LE(body.p_WC.x(), tolerance(1e-15)) << "overshoot in frame " << i;
@@ -63,21 +63,21 @@ TEST_P(Convergence, TurnsTheBodyIntoPlaceFromNearlyHalfATurn) {
   RigidBody body = brick(0.2, {0.1, 0.2, 0.3});
   const Coupling c = make_coupling(body, 1e-3, {300, 0.1}, true);
   const CouplingTarget target = resting_at({{0, 0, 0}, rotation_from_vector({1.5, -2, 1.5})});
-  for (int i = 0; i < 4000; ++i) (void)GetParam()(body, held(c, body, target), 1e-3);
+  for (int i = 0; i < 4000; ++i) (void)GetParam()(body, held(c, body, target), 1e-3, 1);
   EXPECT_LE(vector_from_rotation(target.R_WB * body.R_WB.conjugate()).norm(), tolerance(1e-9));
   EXPECT_LE(body.omega.norm(), tolerance(1e-8));
 }
 INSTANTIATE_TEST_SUITE_P(BothIntegrators, Convergence, testing::Values(step_semi_implicit, step_implicit));
 
-// The rule of coupling.hpp at all extremes that a scenario may ask for. The share is compared to a few roundings.
-TEST(CouplingShare, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
+// The rule of coupling.hpp at all extremes that a scenario may ask for. The budget used is compared to a few roundings.
+TEST(CouplingBudget, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
   for (const double mass : {1e-9, 1e-3, 1.0, 1e9})
     for (const double size : {1e-4, 0.1, 1e3})
       for (const double dt : {1e-6, 1e-3, 1.0})
         for (const double stiffness : {1e-3, 300.0, 1e12}) {
           const RigidBody body = brick(mass, size * Vector3d(1e-4, 1, 2));
           const Coupling c = make_coupling(body, dt, {stiffness, stiffness}, true);
-          ASSERT_LE(c.share, kCouplingShare * (1 + tolerance(64 * 0x1p-53)));
+          ASSERT_LE(c.budget_used, kCouplingBudget * (1 + tolerance(64 * 0x1p-53)));
           ASSERT_GT(c.stiffness, 0);
           ASSERT_LE(c.stiffness, stiffness);
           ASSERT_GT(c.angular_stiffness, 0);
@@ -89,12 +89,12 @@ TEST(CouplingShare, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
 // With the greatest stiffness that the rule allows, any body of any size comes to rest at its target; the slowest
 // rotation of a needle (principal inertias 1 : 1e6) takes the longest: w dt = 0.449 / 1000, e^-(0.449 * 100) of 1e5
 // steps.
-TEST(CouplingShare, ConvergesWhereTheRuleLimitsIt) {
+TEST(CouplingBudget, ConvergesWhereTheRuleLimitsIt) {
   for (const double mass : {1e-9, 1e9})
     for (const double dt : {1e-6, 1.0}) {
       RigidBody body = brick(mass, {1e-6, 1e-6, 0.1});
       const Coupling c = make_coupling(body, dt, {1e30, 1e30}, true);
-      ASSERT_LE(std::abs(c.share - kCouplingShare), tolerance(1e-9)) << "the rule did not limit this coupling";
+      ASSERT_LE(std::abs(c.budget_used - kCouplingBudget), tolerance(1e-9)) << "the rule did not limit this coupling";
       const CouplingTarget target = resting_at({{0.1, 0, 0}, rotation_from_vector({0.3, 0.5, -0.4})});
       for (int i = 0; i < 100000; ++i) (void)step_semi_implicit(body, held(c, body, target), dt);
       ASSERT_TRUE(body.is_finite());
@@ -115,7 +115,8 @@ TEST(CouplingForce, PullsAndTurnsTowardsTheTarget) {
   EXPECT_LE((f.damper.force - Vector3d(0, 0.5 * c.damping, 0)).norm(), tolerance(4 * 24 * 0x1p-53));
   EXPECT_LE((f.damper.torque - Vector3d(0, 0, 0.25 * c.angular_damping_B(2, 2))).norm(), tolerance(1e-15));
   EXPECT_EQ(f.total().force, f.spring.force + f.damper.force);
-  EXPECT_LE(std::abs(coupling_energy(c, body, target) - (0.5 * 300 * 1e-4 + 0.5 * 0.1 * 0.04)), tolerance(1e-16));
+  EXPECT_LE(std::abs(coupling_energy(c, coupling_force(c, body, target)) - (0.5 * 300 * 1e-4 + 0.5 * 0.1 * 0.04)),
+            tolerance(1e-16));
 }
 
 // Far from its target a body feels exactly the limits, towards the target, whichever integrator moves it.
@@ -127,7 +128,7 @@ TEST(CouplingForce, IsCutToItsLimits) {
     RigidBody body = brick(2, {1, 2, 3});
     const Coupling c = make_coupling(body, 1e-3, limits, true);
     const CouplingTarget target = resting_at({{0.3, 0.4, 0}, rotation_from_vector({0, 0, 1.5})});
-    const StepWork work = step(body, held(c, body, target), 1e-3);
+    const StepWork work = step(body, held(c, body, target), 1e-3, 1);
     EXPECT_LE((work.coupling.force - Vector3d(1.2, 1.6, 0)).norm(), tolerance(1e-13));
     EXPECT_LE((work.coupling.torque - Vector3d(0, 0, 0.004)).norm(), tolerance(1e-16));
     EXPECT_LE((body.v_C - 1e-3 / 2 * Vector3d(1.2, 1.6, 0)).norm(), tolerance(1e-15));

@@ -74,6 +74,14 @@ class StepDeathTest : public ::testing::TestWithParam<void (*)(RigidBody&, const
   double dt_ = kStep;
 };
 
+TEST(ScaleDeathTest, ScalesContactsByAFraction) {
+  for (const double scale : {-0.1, 1.1, kNaN}) {
+    RigidBody body = brick(1, {1, 2, 3});
+    EXPECT_BROKEN(step_semi_implicit(body, {}, kStep, scale), "is_fraction(contact_scale)");
+    EXPECT_BROKEN(step_implicit(body, {}, kStep, scale), "is_fraction(contact_scale)");
+  }
+}
+
 TEST_P(StepDeathTest, NeedsTime) {
   for (const double dt : {0.0, -kStep, kNaN, kInfinity}) {
     dt_ = dt;
@@ -91,12 +99,6 @@ TEST_P(StepDeathTest, StartsFromAFiniteState) {
 TEST_P(StepDeathTest, StartsFromARotation) {
   body_.R_WB = kTwiceUnit;
   EXPECT_BROKEN(take(), "is_unit(body.R_WB)");
-}
-TEST_P(StepDeathTest, LetsAShareOfTheContactAct) {
-  for (const double share : {-0.1, 1.1, kNaN}) {
-    loads_.contact_share = share;
-    EXPECT_BROKEN(take(), "is_fraction(loads.contact_share)");
-  }
 }
 TEST_P(StepDeathTest, TakesSymmetricMatricesOfContact) {
   loads_.contact_stiffness = lopsided<Matrix6d>();
@@ -129,18 +131,18 @@ TEST(ImplicitStepDeathTest, IsBegunBeforeItIsEnded) {
   EXPECT_BROKEN(end_implicit(body, {}, step, u1, {}, 0), "is_positive(dt)");
 }
 
-TEST(ShareDeathTest, LiesBetweenNothingAndAll) {
-  EXPECT_BROKEN(share_within(-1e-9, {1, 1, 0}), "!(budget < 0)");
-  EXPECT_BROKEN((ContactWork{1, 1, 0}.of(1.5)), "is_fraction(share)");
+TEST(ScaleDeathTest, LiesBetweenNothingAndAll) {
+  EXPECT_BROKEN(passive_scale(-1e-9, {1, 1, 0}), "!(available < 0)");
+  EXPECT_BROKEN((ContactWork{1, 1, 0}.at(1.5)), "is_fraction(scale)");
   const Matrix6d none = Matrix6d::Zero();
-  EXPECT_BROKEN(acted({}, none, none, Vector6d::Zero(), {kNaN, {}, {}}, kStep), "is_fraction(end.share)");
-  EXPECT_BROKEN(acted({}, none, none, Vector6d::Zero(), {}, 0), "is_positive(dt)");
+  EXPECT_BROKEN(wrench_at_end({}, none, none, Vector6d::Zero(), {kNaN, {}, {}}, kStep), "is_fraction(end.scale)");
+  EXPECT_BROKEN(wrench_at_end({}, none, none, Vector6d::Zero(), {}, 0), "is_positive(dt)");
 }
 
-// inf - inf is no number, and a share that is none would go into every body of the group.
-TEST(ShareWithin, IsZeroForWorkBeyondDoublePrecision) {
-  EXPECT_EQ(share_within(1, {kInfinity, kInfinity, kInfinity}), 0);
-  EXPECT_EQ(share_within(1, {kInfinity, 1, kNaN}), 0);
+// inf - inf is no number, and a scale that is no number would go into every body of the group.
+TEST(PassiveScale, IsZeroForWorkBeyondDoublePrecision) {
+  EXPECT_EQ(passive_scale(1, {kInfinity, kInfinity, kInfinity}), 0);
+  EXPECT_EQ(passive_scale(1, {kInfinity, 1, kNaN}), 0);
 }
 
 }  // namespace

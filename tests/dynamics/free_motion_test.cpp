@@ -18,9 +18,9 @@ using test::Inputs;
 using test::seeds;
 using test::tolerance;
 
-class FreeMotion : public testing::TestWithParam<StepWork (*)(RigidBody&, const Loads&, double)> {
+class FreeMotion : public testing::TestWithParam<StepWork (*)(RigidBody&, const Loads&, double, double)> {
  protected:
-  static void step(RigidBody& body, const Loads& loads, double dt) { (void)GetParam()(body, loads, dt); }
+  static void step(RigidBody& body, const Loads& loads, double dt) { (void)GetParam()(body, loads, dt, 1); }
 };
 
 // Velocity first: after n steps v = n g dt and the path is g dt^2 n (n + 1)/2, that is g t (t + dt)/2. n roundings.

@@ -16,7 +16,7 @@ namespace {
 using test::brick;
 using test::tolerance;
 
-using Step = StepWork (*)(RigidBody&, const Loads&, double);
+using Step = StepWork (*)(RigidBody&, const Loads&, double, double);
 
 struct World {
   bool gravity = false, held = false, wall = false;
@@ -24,7 +24,7 @@ struct World {
   bool slips = false;  ///< the coupling is limited to a fraction of what the hand pulls with
 };
 
-/// What is left of one second of that world.
+/// The result of one second of that world.
 struct Outcome {
   double residual = 0;   ///< largest ever
   double turnover = 0;   ///< the energies that went through, to judge the residual against
@@ -93,7 +93,7 @@ Outcome live(const World& world, Step step, double dt) {
   for (int i = 0; i < std::lround(1 / dt); ++i) {
     const CouplingTarget target = handle(i * dt);
     ledger.add_jump(energy_of(world, body, coupling, target, shadow_dt).sum() - energy.sum());
-    const StepWork work = step(body, loads_of(world, body, coupling, target), dt);
+    const StepWork work = step(body, loads_of(world, body, coupling, target), dt, 1);
     ledger.add(work);
     outcome.pull = std::max(outcome.pull, work.coupling.force.norm());
     energy = energy_of(world, body, coupling, target, shadow_dt);

@@ -1,4 +1,5 @@
-// A contact with a budget gives no more energy than that, and is otherwise as it was (share_within).
+// The passivity controller: a contact gives no more energy than is available, and is otherwise unchanged
+// (passive_scale).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,13 +17,12 @@ using test::tolerance;
 
 constexpr double kStep = 1e-3;
 
-/// One of the two integrators, and a step of it within a budget [J].
+/// One of the two integrators, and a step of it with so much energy available [J].
 struct Method {
   ContactWork (*contact_work)(const RigidBody&, const Loads&, double);
-  StepWork (*step)(RigidBody&, const Loads&, double);
-  StepWork within(double budget, RigidBody& body, Loads& loads) const {
-    loads.contact_share = share_within(budget, contact_work(body, loads, kStep));
-    return step(body, loads, kStep);
+  StepWork (*step)(RigidBody&, const Loads&, double, double);
+  StepWork within(double available, RigidBody& body, const Loads& loads) const {
+    return step(body, loads, kStep, passive_scale(available, contact_work(body, loads, kStep)));
   }
 };
 
@@ -52,20 +52,20 @@ struct Case {
 
 class PassiveContact : public testing::TestWithParam<Method> {};
 
-TEST_P(PassiveContact, GivesItsBudgetAndNoMore) {
+TEST_P(PassiveContact, GivesTheAvailableEnergyAndNoMore) {
   const RandomStream r(1, "passive contacts");
   int limited = 0;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const Case start(r, i);
-    for (const double budget : {0.0, 1e-6, 1e-4}) {
+    for (const double available : {0.0, 1e-6, 1e-4}) {
       Case free = start;
-      const StepWork all = GetParam().step(free.body, free.loads, kStep);
+      const StepWork all = GetParam().step(free.body, free.loads, kStep, 1);
       Case tight = start;
-      const StepWork work = GetParam().within(budget, tight.body, tight.loads);
-      EXPECT_LE(work.contact_work, budget + tolerance(1e-16));
-      if (all.contact_work <= budget) continue;
+      const StepWork work = GetParam().within(available, tight.body, tight.loads);
+      EXPECT_LE(work.contact_work, available + tolerance(1e-16));
+      if (all.contact_work <= available) continue;
       ++limited;
-      EXPECT_GE(work.contact_work, budget - tolerance(1e-16)) << "no less either";
+      EXPECT_GE(work.contact_work, available - tolerance(1e-16)) << "no less either";
       const double angle = work.contact.force.dot(all.contact.force);
       EXPECT_GE(angle, 0) << "it never pulls";
       EXPECT_LE(angle, all.contact.force.squaredNorm() * (1 + 1e-12));
@@ -74,14 +74,14 @@ TEST_P(PassiveContact, GivesItsBudgetAndNoMore) {
   EXPECT_GT(limited, 500);
 }
 
-// Bit for bit: what only resists, or stays within its budget, is as if there were none.
-TEST_P(PassiveContact, ChangesNothingWithinItsBudget) {
+// Bit for bit: a contact that only resists, or gives less than is available, is unchanged.
+TEST_P(PassiveContact, ChangesNothingBelowTheAvailableEnergy) {
   const RandomStream r(2, "passive contacts");
   int unlimited = 0;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     Case free(r, i);
     Case tight = free;
-    const StepWork all = GetParam().step(free.body, free.loads, kStep);
+    const StepWork all = GetParam().step(free.body, free.loads, kStep, 1);
     constexpr double kBudget = 1e-5;
     if (all.contact_work > kBudget) continue;
     ++unlimited;
@@ -95,7 +95,7 @@ TEST_P(PassiveContact, ChangesNothingWithinItsBudget) {
 }
 
 // A body at rest that finds itself in a wall and is pushed into it: the wall holds it and does not throw it out.
-TEST_P(PassiveContact, WithoutABudgetHoldsABodyAtRest) {
+TEST_P(PassiveContact, WithoutEnergyHoldsABodyAtRest) {
   RigidBody body = brick(0.5, {0.1, 0.1, 0.1});
   Loads loads;
   loads.external.force = {0, 0, -2};
@@ -106,7 +106,7 @@ TEST_P(PassiveContact, WithoutABudgetHoldsABodyAtRest) {
   EXPECT_LE(std::abs(body.v_C.z()), tolerance(1e-15));
 }
 
-// A hand that pulls out of a wall without a budget feels nothing of it.
+// A hand that pulls a body out of a wall feels nothing of the wall, if no energy is available.
 TEST_P(PassiveContact, DoesNotHoldBackWhatLeaves) {
   RigidBody body = brick(0.5, {0.1, 0.1, 0.1});
   Loads loads;
@@ -118,21 +118,21 @@ TEST_P(PassiveContact, DoesNotHoldBackWhatLeaves) {
   EXPECT_LE(std::abs(body.v_C.z() - 6 * kStep), tolerance(1e-15));
 }
 
-// What it says of the work of a share is what the step then does, whatever the share.
-TEST_P(PassiveContact, TellsTheWorkOfEveryShare) {
+// The work predicted for a scale is that of the step, for any scale.
+TEST_P(PassiveContact, PredictsTheWorkOfEveryScale) {
   const RandomStream r(3, "passive contacts");
   for (std::uint64_t i = 0; i < 300; ++i) {
     const Case start(r, i);
     const ContactWork told = GetParam().contact_work(start.body, start.loads, kStep);
-    for (const double share : {0.0, 0.25, 1.0}) {
+    for (const double scale : {0.0, 0.25, 1.0}) {
       Case c = start;
-      c.loads.contact_share = share;
-      EXPECT_LE(std::abs(GetParam().step(c.body, c.loads, kStep).contact_work - told.of(share)), tolerance(1e-15));
+      EXPECT_LE(std::abs(GetParam().step(c.body, c.loads, kStep, scale).contact_work - told.at(scale)),
+                tolerance(1e-15));
     }
   }
 }
 
-// A load of two contacts divides into what each did.
+// The wrench of two contacts divides into the wrenches of each.
 TEST_P(PassiveContact, DividesIntoItsParts) {
   const RandomStream r(4, "passive contacts");
   for (std::uint64_t i = 0; i < 300; ++i) {
@@ -142,12 +142,11 @@ TEST_P(PassiveContact, DividesIntoItsParts) {
     c.loads.contact += other.loads.contact;
     c.loads.contact_stiffness += other.loads.contact_stiffness;
     c.loads.contact_damping += other.loads.contact_damping;
-    c.loads.contact_share = i % 2 == 0 ? 1 : 0.3;
-    const StepWork work = GetParam().step(c.body, c.loads, kStep);
+    const StepWork work = GetParam().step(c.body, c.loads, kStep, i % 2 == 0 ? 1 : 0.3);
     Wrench sum;
     for (const Loads* part : {&one.loads, &other.loads})
-      sum += acted(part->contact, part->contact_stiffness, part->contact_damping, part->contact_drift, work.contact_end,
-                   kStep);
+      sum += wrench_at_end(part->contact, part->contact_stiffness, part->contact_damping, part->contact_drift,
+                           work.contact_end, kStep);
     EXPECT_LE((sum.force - work.contact.force).norm(), tolerance(1e-12));
     EXPECT_LE((sum.torque - work.contact.torque).norm(), tolerance(1e-12));
   }

@@ -56,11 +56,11 @@ TEST(ExactLinkDeathTest, LooksAStepAheadFromTwoPlacements) {
   EXPECT_BROKEN(ExactLink(nullptr, body), "first_ != nullptr");
   EXPECT_BROKEN(ExactLink(body, nullptr), "second_ != nullptr");
   SearchThresholds thresholds;
-  thresholds.own_none = thresholds.own_free;
-  EXPECT_BROKEN(ExactLink(body, body, 16, thresholds), "thresholds.own_free < thresholds.own_none");
+  thresholds.own_face_none = thresholds.own_face_full;
+  EXPECT_BROKEN(ExactLink(body, body, 16, thresholds), "thresholds.own_face_full < thresholds.own_face_none");
   thresholds = {};
-  thresholds.lean_none = 0;
-  EXPECT_BROKEN(ExactLink(body, body, 16, thresholds), "thresholds.lean_free < thresholds.lean_none");
+  thresholds.cone_none = 0;
+  EXPECT_BROKEN(ExactLink(body, body, 16, thresholds), "thresholds.cone_full < thresholds.cone_none");
   ExactLink link(body, body);
   BodyMotion still;
   EXPECT_BROKEN(link.find(still, still, 0, 0.01), "is_positive(dt)");

@@ -162,7 +162,7 @@ TEST(BallAndTwoBoxes, AreAsFarApartAsTheClosedFormSays) {
 }
 
 // A slider that lies on a plate beside a boss, or on a cross, pressed in by a micrometre: its edges run past the
-// planes of all other faces, and none of these has a say.
+// planes of all other faces, and none of those faces owns them.
 TEST(SliderOnTwoBoxes, OverlapsByWhatItIsPressedInAndNoMore) {
   constexpr double kPressed = 1e-6;
   const Vector3d slider(0.02, 0.016, 0.01);
@@ -184,7 +184,8 @@ TEST(SliderOnTwoBoxes, OverlapsByWhatItIsPressedInAndNoMore) {
   }
 }
 
-// What lies on a ball's pole touches it where all turns of the ball's chart are one place, and its last cells end.
+// A plate on a ball's pole touches it where the chart of the ball is degenerate: all turns are one place, and the last
+// cells end.
 TEST(PlateOnABall, RestsOnThePole) {
   constexpr double kRadius = 0.03;
   constexpr double kGap = 1e-5;
@@ -202,8 +203,8 @@ TEST(PlateOnABall, RestsOnThePole) {
   }
 }
 
-// A box lies on a plate with a hollow, all but flush: where its edges cross the hollow's rim, at whatever angle, it is
-// no deeper in than anywhere.
+// A box lies on a plate with a hollow; bottom and plate all but coincide. Where the box's edges cross the hollow's rim,
+// at whatever angle, it overlaps no more than elsewhere.
 TEST(BoxOverAHollow, OverlapsByWhatItIsPressedInWhereItsEdgesCrossTheRim) {
   constexpr double kLean = 1e-6;  // rad
   const Vector3d plate(0.1, 0.1, 0.02);

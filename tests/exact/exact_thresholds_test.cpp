@@ -21,11 +21,12 @@ struct Threshold {
 };
 
 const Threshold kThresholds[] = {
-    {"own", [](Numbers& n, double factor) { n.thresholds.own_free *= factor, n.thresholds.own_none *= factor; }},
-    {"flush", [](Numbers& n, double factor) { n.thresholds.flush *= factor; }},
-    {"lean", [](Numbers& n, double factor) { n.thresholds.lean_free *= factor, n.thresholds.lean_none *= factor; }},
+    {"own",
+     [](Numbers& n, double factor) { n.thresholds.own_face_full *= factor, n.thresholds.own_face_none *= factor; }},
+    {"coincident", [](Numbers& n, double factor) { n.thresholds.coincident *= factor; }},
+    {"cone", [](Numbers& n, double factor) { n.thresholds.cone_full *= factor, n.thresholds.cone_none *= factor; }},
     {"touching", [](Numbers& n, double factor) { n.thresholds.touching *= factor; }},
-    {"firm", [](Numbers& n, double factor) { n.thresholds.firm *= factor; }},
+    {"weight_enough", [](Numbers& n, double factor) { n.thresholds.weight_enough *= factor; }},
     {"smooth", [](Numbers& n, double factor) { n.options.smooth *= factor; }},
     {"group_angle", [](Numbers& n, double factor) { n.options.group_angle *= factor; }},
 };
@@ -104,7 +105,7 @@ ExactLink link_of(const Numbers& n) {
           n.thresholds};
 }
 
-// None changes anything by 1 % but `lean`: at twice its sines, 57 degrees and more, normals that lean so far are let
+// None changes anything by 1 % but `cone`: at twice its sines, 57 degrees and more, normals that lean so far are let
 // in, and 12 places of 299 feel another contact. Halved it changes none.
 TEST_P(ExactThresholds, HardlyChangeWhatALeaningPinFeels) {
   static ExactLink usual = link_of({});
@@ -120,7 +121,7 @@ TEST_P(ExactThresholds, HardlyChangeWhatALeaningPinFeels) {
     other += same ? 0 : 1;
   }
   EXPECT_GT(touching, 250);
-  const bool lets_more_in = std::get<0>(GetParam()).name == std::string("lean") && std::get<1>(GetParam()) > 1;
+  const bool lets_more_in = std::get<0>(GetParam()).name == std::string("cone") && std::get<1>(GetParam()) > 1;
   EXPECT_LE(other, lets_more_in ? 0.05 * touching : 0);
 }
 

@@ -38,14 +38,14 @@ const Round kPin{"pin", 0.02, 0.02}, kCone{"cone", 0.015, 0.035}, kSlim{"slim co
 /// The second's place and orientation if its point at height z2 lies `gap` over the first's at z1, their normals
 /// opposite and their generators turned by `turn` against each other.
 Pose beside(const Round& first, double z1, const Round& second, double z2, double gap, double turn) {
-  const auto frame = [](const Vector3d& n, const Vector3d& t) {
+  const auto axes_of = [](const Vector3d& n, const Vector3d& t) {
     Matrix3d m;
     m << n, t, n.cross(t);
     return m;
   };
   const Vector3d t = std::cos(turn) * first.generator() + std::sin(turn) * first.normal().cross(first.generator());
   const Quaterniond rotation(
-      Matrix3d(frame(-first.normal(), t) * frame(second.normal(), second.generator()).transpose()));
+      Matrix3d(axes_of(-first.normal(), t) * axes_of(second.normal(), second.generator()).transpose()));
   return {first.point(z1) + gap * first.normal() - rotation * second.point(z2), rotation};
 }
 

@@ -21,20 +21,20 @@ TEST(SeatedCone, RestsWhereItFits) {
   }
 }
 
-// Every sample of four rims is within nanometres of two faces. Those that cannot touch are told at a glance: what
-// slides to its nearest place also becomes a row.
-TEST(SeatedCone, TriesHardlyMoreThanWhatTouches) {
+// Every sample of four rims is within nanometres of two faces. Those that another face owns are culled by the block:
+// hardly a sample is moved to its closest place that does not become a row.
+TEST(SeatedCone, SearchesHardlyMoreSamplesThanTouch) {
   HeldBody cone = seated_cone();
-  std::uint64_t slides = 0;
+  std::uint64_t closest_places = 0;
   std::uint64_t rows = 0;
   for (int i = 0; i < kSeatSteps; ++i) {
     cone.step(hand_over_seat(i * cone.dt));
     if (i < 500) continue;
-    slides += cone.link.cost().slides;
+    closest_places += cone.link.cost().closest_places;
     rows += cone.link.cost().rows;
   }
   EXPECT_GT(rows, 40'000);
-  EXPECT_LE(slides, 1.1 * static_cast<double>(rows));
+  EXPECT_LE(closest_places, 1.1 * static_cast<double>(rows));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What the overlap of one frame is made of: a step treats motion and surfaces as straight (convex_step.hpp), so what is
-// left are the closed forms of a straight line beside a curve, and nothing of it stays for the next step.
+// The overlap that one frame leaves. A step treats motion and surfaces as straight (exact_link.hpp), so the overlap is
+// that of a straight line beside a curve, in closed form, and none of it stays for the next step.
 #include <gtest/gtest.h>
 
 #include "engine/exact/convex_step.hpp"
@@ -11,7 +11,7 @@ namespace {
 using Kind = Solid::Kind;
 
 constexpr double kStep = 0.001;      // s
-constexpr double kRounding = 3e-10;  // m, of entities and slides
+constexpr double kRounding = 3e-10;  // m, of entities and closest places
 
 struct Sizes {
   double bore, ball;  ///< m, radii

@@ -43,9 +43,9 @@ HeldBody held_plate(const Solid& held) {
   return plate;
 }
 
-// Both pins stand a millimetre beside their holes, where they lie flush on two half-moons, and a shaking hand presses
-// with 12 N near these half-moons' tips. A single row a group, at whichever of its places is nearest by a rounding
-// error, lets the plate tip over and back again, 5 um deep and at half a radian a second.
+// Both pins stand a millimetre beside their holes, where their ends coincide with the block's top on two half-moons. A
+// shaking hand presses with 12 N near the tips of these half-moons. With a single row per group, at the place that is
+// closest by a rounding error, the plate tips to and fro, 5 um deep and at half a radian per second.
 TEST(PlateWithTwoPins, LiesStillBesideItsHoles) {
   for (double turn = 3.9; turn < 4.65; turn += 0.1) {
     SCOPED_TRACE(turn);
@@ -71,8 +71,8 @@ TEST(PlateWithTwoPins, LiesStillBesideItsHoles) {
 }
 
 // A plate leans on the block by its edge and by its one pin, whose rim crosses the hole's rim at two places, 44 mm
-// apart. These wander along both rims; wherever they are, also at the ends of segments, the rows there hold what a
-// group holds.
+// apart. These wander along both rims. Wherever they are, also at the ends of segments, the rows there are as stiff as
+// those of a group.
 TEST(LeaningPlate, IsHeldAllAlongTheRims) {
   Pair pair(block(), one_pin(), 0.003);
   for (int i = -100; i < 100; ++i) {

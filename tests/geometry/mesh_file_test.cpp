@@ -1,10 +1,10 @@
 // Mesh files, good and bad. Every format is written here by hand, so that a test shows what it reads.
 #include "engine/geometry/loader.hpp"
 
-#include <unistd.h>
-
+#include <array>
 #include <cstring>
 
+#include "engine/geometry/write_file.hpp"
 #include "tests/geometry/models.hpp"
 
 namespace verisim {
@@ -75,11 +75,17 @@ std::string glb(const TriangleMesh& mesh) {
 }
 
 std::string binary_stl(const TriangleMesh& mesh, double units_per_metre = 1) {
-  const std::string path = std::filesystem::temp_directory_path() / fmt::format("verisim-mesh-{}.stl", getpid());
-  write_stl(path, mesh, units_per_metre);
-  const std::string content = testing::read_file(path);
-  std::filesystem::remove(path);
-  return content;
+  std::string out(80, ' ');  // the head, which says nothing
+  const auto put = [&](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  put(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    put(std::array<float, 3>{});  // the normal, left to the reader
+    for (const std::uint32_t corner : triangle) {
+      put(Eigen::Vector3f((units_per_metre * mesh.vertices[corner]).cast<float>()));
+    }
+    out.append(2, '\0');
+  }
+  return out;
 }
 
 Part load_one(const std::string& path, const std::string& content, const LoadOptions& options = {}) {
@@ -250,10 +256,10 @@ TEST(BadMesh, ThatIsInsideOutIsTurnedWithANote) {
   EXPECT_EQ(part.notes.size(), 1U);
 }
 
-TEST(WriteStl, SaysWhenItCannotWrite) {
-  const std::string error = error_of(ErrorKind::io, [] { write_stl("/nowhere/a.stl", kBox, 1000); });
+TEST(WriteFile, SaysWhenItCannotWrite) {
+  const std::string error = error_of(ErrorKind::io, [] { write_file("/nowhere/a.stl", "solid"); });
   EXPECT_NE(error.find("/nowhere/a.stl"), std::string::npos);
-  EXPECT_THROW(write_stl("/dev/full", kBox, 1000), Error);
+  EXPECT_THROW(write_file("/dev/full", "solid"), Error);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "engine/base/random.hpp"
 #include "tests/geometry/models.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace verisim {
 namespace {
@@ -61,7 +62,7 @@ TEST(MassProperties, OfAShellTurnedInsideOutAreNegative) {
 TEST(Subdivide, KeepsShapeAndTopology) {
   TriangleMesh coarse = box_mesh({0, 0, 0}, {1, 2, 3});
   coarse.face_of_triangle = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
-  const TriangleMesh fine = subdivide(coarse);
+  const TriangleMesh fine = test::subdivide(coarse);
   EXPECT_EQ(fine.triangles.size(), 4 * coarse.triangles.size());
   EXPECT_EQ(fine.vertices.size(), 8U + 18U);  // Euler: a closed surface with 12 triangles has 18 edges
   EXPECT_EQ(fine.face_of_triangle.size(), fine.triangles.size());
@@ -142,7 +143,7 @@ TEST(SelfIntersections, AreNoneInNestedShells) {
 
 // A corner pulled through the opposite wall of the box: the triangles at it cross those of the wall.
 TEST(SelfIntersections, AreFoundWithinOneShell) {
-  TriangleMesh mesh = subdivide(unit_box());
+  TriangleMesh mesh = test::subdivide(unit_box());
   mesh.vertices[0] = {0.4, 0.45, 1.5};
   EXPECT_GT(examine(mesh, true).self_intersections, 0U);
 }

@@ -1,4 +1,4 @@
-// What the geometry tests share: files, small meshes and the checks that hold for every part.
+// Helpers of the geometry tests: files, small meshes and checks that hold for every part.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,8 +11,12 @@
 #include <string>
 
 #include "engine/geometry/loader.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace verisim::testing {
+
+using test::append;
+using test::turned_inside_out;
 
 inline std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -60,17 +64,6 @@ inline TriangleMesh box_mesh(const Vector3d& a, const Vector3d& b) {
   }
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
-
-inline void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [i, j, k] : other.triangles) mesh.triangles.push_back({first + i, first + j, first + k});
-}
-
-inline TriangleMesh turned_inside_out(TriangleMesh mesh) {
-  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
 }
 

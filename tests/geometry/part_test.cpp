@@ -101,13 +101,21 @@ TEST(Tables, DamagedAreRefused) {
     }
     EXPECT_THROW(static_cast<void>(from_tables("pin", damaged)), Error) << name;
   }
+  for (const char* name : {"face_kind", "edge_kind"}) {  // a kind that there is not
+    std::vector<NamedArray> damaged = sound;
+    for (NamedArray& table : damaged) {
+      if (table.name == name) table.bytes[0] = std::byte{0x7F};
+    }
+    const std::string error = error_of(ErrorKind::input, [&] { static_cast<void>(from_tables("pin", damaged)); });
+    EXPECT_NE(error.find("has kind 127"), std::string::npos) << error;
+  }
 }
 
 TEST(Questions, AreAskedAboutAPart750MetresWide) {
   Part part;
   part.name = "peg";
   part.mesh = testing::box_mesh({0, 0, 0}, {750, 20, 30});
-  const std::vector<std::string> questions = questions_about(part);
+  const std::vector<std::string> questions = warnings_about(part);
   ASSERT_EQ(questions.size(), 1U);
   EXPECT_NE(questions[0].find("'peg' is 750 m wide"), std::string::npos) << questions[0];
   EXPECT_NE(questions[0].find("0.001"), std::string::npos) << questions[0];
@@ -116,14 +124,14 @@ TEST(Questions, AreAskedAboutAPart750MetresWide) {
 TEST(Questions, AreAskedAboutAPartThinnerThanAHair) {
   Part part;
   part.mesh = testing::box_mesh({0, 0, 0}, {5e-6, 1e-6, 1e-6});
-  EXPECT_EQ(questions_about(part).size(), 1U);
+  EXPECT_EQ(warnings_about(part).size(), 1U);
 }
 
 TEST(Questions, AreNotAskedAboutUsualParts) {
   for (const double size : {1e-4, 0.05, 1.0, 50.0}) {
     Part part;
     part.mesh = testing::box_mesh({0, 0, 0}, {size, size, size});
-    EXPECT_TRUE(questions_about(part).empty()) << size;
+    EXPECT_TRUE(warnings_about(part).empty()) << size;
   }
 }
 

@@ -1,4 +1,4 @@
-// What the READMEs beside the shared models record of them, found again.
+// The figures that the READMEs beside the shared models record.
 #include <algorithm>
 #include <cstring>
 #include <set>

@@ -1,11 +1,12 @@
-// Recovery of meshes that are damaged, open, tangled or shaped by chance: it ends, says something of every triangle
-// and says the same whatever their order.
+// Recovery of meshes that are damaged, open, tangled or random: it ends, gives every triangle a face, and does not
+// depend on the order of triangles.
 #include <gtest/gtest.h>
 
 #include "engine/geometry/recover.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/parametrization.hpp"
 #include "tests/geometry/recovered.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace verisim {
 namespace {
@@ -14,7 +15,7 @@ class Damage {
  public:
   explicit Damage(std::uint64_t seed) : random_(seed, "damage") {}
 
-  /// Some of the ways in which files are wrong, drawn by the seed.
+  /// Some of the defects that files have, drawn by the seed.
   void to(TriangleMesh& mesh) {
     for (int i = 0; i < 12; ++i) {
       const std::uint32_t t = below(mesh.triangles.size()), v = below(mesh.vertices.size());
@@ -42,7 +43,7 @@ class Damage {
     }
   }
 
-  /// Triangles on chance vertices: no surface at all.
+  /// Triangles on random vertices: no surface at all.
   TriangleMesh soup() {
     TriangleMesh mesh;
     for (int i = 0; i < 30; ++i) mesh.vertices.emplace_back(20 * offset(), 20 * offset(), 20 * offset());
@@ -60,8 +61,8 @@ class Damage {
   std::uint64_t drawn_ = 0;
 };
 
-/// Every triangle with three corners is of a face and its vertices are on it.
-void expect_told(const Part& part, double tolerance) {
+/// Every triangle with three different corners has a face, and its vertices are on it.
+void expect_faces_everywhere(const Part& part, double tolerance) {
   ASSERT_EQ(part.mesh.face_of_triangle.size(), part.mesh.triangles.size());
   for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = part.mesh.triangles[t];
@@ -90,12 +91,12 @@ void expect_the_same_in_any_order(const TriangleMesh& mesh, std::uint64_t seed) 
   recover_brep(part, {.tolerance = kTolerance});
   recover_brep(other, {.tolerance = kTolerance});
   EXPECT_EQ(testing::bytes_of(part), testing::bytes_of(other));
-  expect_told(part, kTolerance);
+  expect_faces_everywhere(part, kTolerance);
 }
 
-TEST(RecoverDamaged, SaysSomethingOfEveryTriangleInAnyOrder) {
+TEST(RecoverDamaged, GivesEveryTriangleAFaceInAnyOrder) {
   TriangleMesh bulky = testing::box_mesh({0, 0, 0}, {0.03, 0.02, 0.01});
-  for (int i = 0; i < 3; ++i) bulky = subdivide(bulky);
+  for (int i = 0; i < 3; ++i) bulky = test::subdivide(bulky);
   const TriangleMesh ring = testing::ring_mesh(0.02, 0.006, 32, 20);
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);

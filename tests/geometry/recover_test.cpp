@@ -184,7 +184,7 @@ TEST(Recover, FindsATubeThatPassesItsAxis) {
   EXPECT_NEAR(part.faces[0].v_range[1] - part.faces[0].v_range[0], 0.3, 1e-6);
 }
 
-// --- round or a prism -----------------------------------------------------------------------------------------------
+// --- cylinder or prism -----------------------------------------------------------------------------------------------
 
 /// A regular prism of this many sides, closed.
 TriangleMesh prism_mesh(std::uint32_t sides) {
@@ -208,14 +208,14 @@ Counts faces_of_prism(std::uint32_t sides, const RecoverOptions& options) {
 }
 
 // The rule of the header: 31.5 degrees, between the 32.7 of 11 sides and the 30 of 12.
-TEST(Recover, TakesAPrismOfTwelveSidesForRoundAndOneOfElevenNot) {
+TEST(Recover, TakesAPrismOfTwelveSidesForACylinderAndOneOfElevenForPlanes) {
   const Counts round = {{"plane", 2}, {"cylinder", 1}};
   for (const std::uint32_t sides : {12U, 13U, 16U, 24U, 150U}) EXPECT_EQ(faces_of_prism(sides, {}), round) << sides;
   for (const std::uint32_t sides : {3U, 4U, 6U, 8U, 10U, 11U})
     EXPECT_EQ(faces_of_prism(sides, {}), (Counts{{"plane", static_cast<int>(sides) + 2}})) << sides;
 }
 
-TEST(Recover, CountsAsRoundWhatItIsToldTo) {
+TEST(Recover, TakesForCurvedWhatTheOptionSays) {
   const Counts round = {{"plane", 2}, {"cylinder", 1}};
   const double degree = M_PI / 180;
   EXPECT_EQ(faces_of_prism(16, {.round_step_max = 22 * degree}), (Counts{{"plane", 18}})) << "steps of 22.5 degrees";

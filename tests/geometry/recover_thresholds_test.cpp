@@ -53,17 +53,19 @@ struct Number {
   double RecoverThresholds::*member;
 };
 class RecoverThreshold : public ::testing::TestWithParam<Number> {};
-INSTANTIATE_TEST_SUITE_P(
-    HalfAndDouble, RecoverThreshold,
-    ::testing::Values(Number{"longer_step", &RecoverThresholds::longer_step}, Number{"snug", &RecoverThresholds::snug},
-                      Number{"bulge", &RecoverThresholds::bulge}, Number{"equal_step", &RecoverThresholds::equal_step},
-                      Number{"nearly_tangent", &RecoverThresholds::nearly_tangent},
-                      Number{"covers", &RecoverThresholds::covers}, Number{"rim", &RecoverThresholds::rim},
-                      Number{"larger_by_far", &RecoverThresholds::larger_by_far},
-                      Number{"narrower", &RecoverThresholds::narrower},
-                      Number{"mostly_sharp", &RecoverThresholds::mostly_sharp},
-                      Number{"mostly_smooth", &RecoverThresholds::mostly_smooth}),
-    [](const auto& number) { return std::string(number.param.name); });
+INSTANTIATE_TEST_SUITE_P(HalfAndDouble, RecoverThreshold,
+                         ::testing::Values(Number{"longer_step", &RecoverThresholds::longer_step},
+                                           Number{"tight_fit", &RecoverThresholds::tight_fit},
+                                           Number{"sagitta_min", &RecoverThresholds::sagitta_min},
+                                           Number{"equal_step", &RecoverThresholds::equal_step},
+                                           Number{"nearly_tangent", &RecoverThresholds::nearly_tangent},
+                                           Number{"parameter_area_min", &RecoverThresholds::parameter_area_min},
+                                           Number{"sharp_edge_slack", &RecoverThresholds::sharp_edge_slack},
+                                           Number{"larger_by", &RecoverThresholds::larger_by},
+                                           Number{"narrower", &RecoverThresholds::narrower},
+                                           Number{"mostly_sharp", &RecoverThresholds::mostly_sharp},
+                                           Number{"mostly_smooth", &RecoverThresholds::mostly_smooth}),
+                         [](const auto& number) { return std::string(number.param.name); });
 
 /// Half or double; of numbers just above 1 what they are above it; a share is squared, or its root is taken.
 double scaled(double usual, double factor) {

@@ -1,4 +1,4 @@
-// What the tests of recovery share: parts as files have them, and results to compare to the last bit.
+// Helpers of the recovery tests: parts as files have them, and results to compare to the last bit.
 #pragma once
 
 #include <algorithm>

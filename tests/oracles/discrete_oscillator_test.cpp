@@ -15,7 +15,7 @@ namespace {
 
 using test::brick;
 using test::tolerance;
-using Step = StepWork (*)(RigidBody&, const Loads&, double);
+using Step = StepWork (*)(RigidBody&, const Loads&, double, double);
 
 constexpr double kMass = 2, kStep = 1e-3;
 
@@ -33,7 +33,7 @@ double excursion(Step step, double share, double damped, int steps) {
   double largest = 0;
   for (int i = 0; i < steps; ++i) {
     loads.coupling_at_start = coupling_force(c, body, loads.target);
-    (void)step(body, loads, kStep);
+    (void)step(body, loads, kStep, 1);
     if (!body.is_finite()) return std::numeric_limits<double>::infinity();
     if (i >= steps - steps / 10) largest = std::max(largest, std::abs(body.p_WC.x()));
   }

@@ -12,6 +12,22 @@ using test::tolerance;
 
 const Vector3d kZ = Vector3d::UnitZ();
 
+/// The dissertation's two, by name. Axis through `c` along the unit vector `v`.
+Vector3d restore_cylindrical(const Vector3d& c, const Vector3d& v, const Vector3d& x, const Vector3d& f, double alpha) {
+  ActiveConstraint axis;
+  axis.kind = ConstraintKind::cylindrical;
+  axis.field = NormalField::about_line;
+  axis.alpha = alpha;
+  axis.point = c;
+  axis.direction = v;
+  return restore(axis, x, f);
+}
+
+/// `n`: unit normal, from the body that feels f towards the other.
+Vector3d restore_planar(const Vector3d& n, const Vector3d& f, double alpha) {
+  return restore_along(n, f, alpha, /*unilateral=*/true);
+}
+
 // Eq. 8.8. Every inexact intermediate is below 4: one rounding is at most 2^-52, fewer than ten add.
 TEST(RestoreCylindrical, GivesTheWorkedNumber) {
   const Vector3d f = restore_cylindrical(Vector3d::Zero(), kZ, {3, 4, 5}, {1, 2, 3}, 0.5);
@@ -36,9 +52,9 @@ TEST(RestoreCylindrical, GivesTheWorkedNumberForARecognizedPin) {
   c.kind = ConstraintKind::cylindrical;
   c.pairing = Pairing::axis_axis;
   c.field = NormalField::about_line;
-  c.guide = Side::a;
+  c.normal_source = Side::a;
   c.pin = Side::b;
-  c.pushes_only = false;
+  c.unilateral = false;
   c.clearance = 0.005;
   c.a = {Vector3d::Zero(), kZ, 0.075, 0.1, 0};
   c.b = {Vector3d::Zero(), kZ, 0.070, 0.2, 0};

@@ -113,7 +113,7 @@ TEST(BrepWords, RefuseWhatIsWrongWithPlaceAndRemedy) {
   const std::string no_radius = refusal_of(cube + R"(local set = FeatureSet()
     set:insert(Cylinder())
     cube:foreachSurfaceVoxel(function(x, y, z) cube:addFeatureSet(set, x, y, z) end))");
-  EXPECT_NE(no_radius.find("'cube': a declared entity has a radius or angle of 0"), std::string::npos) << no_radius;
+  EXPECT_NE(no_radius.find("'cube': a declared cylinder has a radius of 0 m"), std::string::npos) << no_radius;
 }
 
 /// The refusal of a shape that is given to the voxels of the cube's top, whose centres lie in z = top.
@@ -126,15 +126,55 @@ std::string given_to_the_top(const std::string& shape) {
     end))");
 }
 
-TEST(BrepWords, RefuseConesAndToriThatAreNone) {
-  const std::string cone = "local shape = Cone()\nshape.center, shape.radius, shape.halfAngle = {0, 0, 0.02}, 0.02, ";
-  EXPECT_NE(given_to_the_top(cone + "2").find("'cube': a declared cone has a half angle of 2 rad"), std::string::npos);
-  EXPECT_NE(given_to_the_top(cone + "math.pi / 2").find("must be below pi/2"), std::string::npos);
-  EXPECT_EQ(given_to_the_top(cone + "1.5"), "");
-  const std::string torus = "local shape = Torus()\nshape.center, shape.majorRadius, shape.minorRadius = {0, 0, 0}, ";
-  EXPECT_NE(given_to_the_top(torus + "0.02, 0.0201").find("'cube': a declared torus has a minor radius of 0.0201 m"),
-            std::string::npos);
-  EXPECT_EQ(given_to_the_top(torus + "0.02, 0.02"), "");
+// Every size of every shape that is none: zero, below zero, or an angle that is no cone's.
+TEST(BrepWords, RefuseShapesThatAreNone) {
+  struct Row {
+    const char* shape;
+    const char* refusal;  ///< "": taken
+  };
+  constexpr const char* kAbove = "but it must be above 0";
+  constexpr const char* kAngle = "but it must be above 0 and below pi/2, 90 degrees";
+  const Row rows[] = {
+      {"Cylinder()\nshape.radius = 0", kAbove},
+      {"Cylinder()\nshape.radius = -0.02",
+       "'cube': a declared cylinder has a radius of -0.02 m but it must be above 0"},
+      {"Cylinder()\nshape.normal, shape.radius = {1, 0, 0}, 0.02", ""},
+      {"Sphere()\nshape.radius = 0", kAbove},
+      {"Sphere()\nshape.radius = -0.02", "'cube': a declared sphere has a radius of -0.02 m but it must be above 0"},
+      {"Sphere()\nshape.radius = 0.03", ""},
+      {"Circle()\nshape.radius = 0", kAbove},
+      {"Circle()\nshape.radius = -0.02", "'cube': a declared circle has a radius of -0.02 m but it must be above 0"},
+      {"Cone()\nshape.radius, shape.halfAngle = -0.001, 0.5",
+       "'cube': a declared cone has a radius of -0.001 m but it must be 0 or more"},
+      {"Cone()\nshape.center, shape.radius, shape.halfAngle = {0, 0, 0.02}, 0, 1.5", ""},
+      {"Cone()\nshape.radius, shape.halfAngle = 0.02, 0", kAngle},
+      {"Cone()\nshape.radius, shape.halfAngle = 0.02, -0.5", kAngle},
+      {"Cone()\nshape.radius, shape.halfAngle = 0.02, math.pi / 2", kAngle},
+      {"Cone()\nshape.radius, shape.halfAngle = 0.02, 2", "'cube': a declared cone has a half angle of 2 rad"},
+      {"Cone()\nshape.center, shape.radius, shape.halfAngle = {0, 0, 0.02}, 0.02, 1.5", ""},
+      {"Torus()\nshape.majorRadius, shape.minorRadius = 0, 0.01", "a major radius of 0 m but it must be above 0"},
+      {"Torus()\nshape.majorRadius, shape.minorRadius = -0.02, 0.01", "a major radius of -0.02 m"},
+      {"Torus()\nshape.majorRadius, shape.minorRadius = 0.02, 0", "a minor radius of 0 m but it must be above 0"},
+      {"Torus()\nshape.majorRadius, shape.minorRadius = 0.02, -0.01", "a minor radius of -0.01 m"},
+      {"Torus()\nshape.majorRadius, shape.minorRadius = 0.02, 0.0201", "a minor radius of 0.0201 m"},
+      {"Torus()\nshape.majorRadius, shape.minorRadius = 0.02, 0.02", ""},
+  };
+  for (const Row& row : rows) {
+    const std::string refusal = given_to_the_top("local shape = " + std::string(row.shape));
+    if (*row.refusal == '\0') {
+      EXPECT_EQ(refusal, "") << row.shape;
+    } else {
+      EXPECT_NE(refusal.find(row.refusal), std::string::npos) << row.shape << ": " << refusal;
+      EXPECT_EQ(refusal.rfind("pin.lua:", 0), 0U) << "names the place: " << refusal;
+    }
+  }
+  for (const char* number : {"0/0", "1/0", "-1/0"}) {  // refused where it is set
+    for (const char* field : {"Cylinder().radius", "Cone().radius", "Cone().halfAngle", "Sphere().radius",
+                              "Torus().majorRadius", "Torus().minorRadius", "Circle().radius"}) {
+      const std::string refusal = refusal_of(std::string(field) + " = " + number);
+      EXPECT_EQ(refusal.rfind("pin.lua:1: ", 0), 0U) << field << " = " << number << ": " << refusal;
+    }
+  }
 }
 
 TEST(BrepWords, RefuseAShapeThatPassesNowhereNearTheVoxel) {

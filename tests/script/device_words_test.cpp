@@ -56,6 +56,13 @@ TEST(Bind, OfAnUnknownOrDrivenDeviceIsRefused) {
   driven.write("hand.csv", kTrace);
   driven.options.binds = {{"replay", "hand.csv"}};
   EXPECT_NE(driven.refusal().find("is driven by the scenario itself"), std::string::npos);
+  WrittenScenario operated(
+      "addDevice(Devices.Sensable.PhantomOmni{ name = 'omni', operator = Devices.Replay{ trace = 'hand.csv' } })");
+  operated.write("hand.csv", kTrace);
+  operated.options.binds = {{"omni", "hand.csv"}};
+  EXPECT_EQ(operated.refusal(),
+            "--bind omni=hand.csv: device 'omni' is driven already by the scenario; drop the --bind or the scenario's "
+            "source");
   WrittenScenario missing("addDevice(Devices.Sensable.PhantomOmni{ name = 'omni' })");
   missing.options.binds = {{"omni", "gone.csv"}};
   EXPECT_EQ(missing.refusal().rfind("--bind omni=gone.csv: gone.csv: ", 0), 0u);
@@ -104,6 +111,20 @@ TEST(Hand, TakesTheRunsSeedUnlessItHasItsOwn) {
   EXPECT_EQ(x_after("", 1), x_after("", 1));
   EXPECT_NE(x_after("", 1), x_after("", 2));
   EXPECT_EQ(x_after(", seed = 5", 1), x_after(", seed = 5", 2));
+}
+
+// Its tremor is drawn by the hardware's name or, if it has a name of its own, by its word's: whichever name that is.
+TEST(Hand, ThatDrivesHardwareTremblesAlikeUnderEveryNameOfItsOwn) {
+  const auto x_after = [](const std::string& fields, const std::string& hardware) {
+    WrittenScenario written("addDevice(Devices.Haption.Virtuose6D3545{ name = '" + hardware +
+                            "', operator = Devices.Hand{ path = {{0, 0, 0}}, tremor = 0.01" + fields + " } })");
+    written.options.duration = 0.1;
+    written.run(100);
+    return written.scene.devices[0]->reading().handle.position.x();
+  };
+  EXPECT_EQ(x_after(", name = 'a'", "left"), x_after(", name = 'b'", "right"));
+  EXPECT_EQ(x_after(", name = 'a'", "left"), x_after("", "hand"));
+  EXPECT_NE(x_after("", "left"), x_after("", "right"));
 }
 
 TEST(Hand, RefusesAPathThatIsNone) {

@@ -1,4 +1,4 @@
-// What no script can do, however it tries. Each attack runs in the bare sandbox; what it must say is part of the
+// Attacks that the sandbox stops. Each attack runs in the bare sandbox; what it must say is part of the
 // promise.
 #include <gtest/gtest.h>
 

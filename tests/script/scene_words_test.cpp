@@ -21,7 +21,7 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   EXPECT_EQ(p.duration, 3);
   EXPECT_EQ(p.frame_rate, 30);
   EXPECT_EQ(p.integrator, Integrator::implicit);
-  EXPECT_EQ(p.hybrid, Hybrid::off);
+  EXPECT_EQ(p.hybrid, hybrid::off);
   EXPECT_EQ(p.contact, ContactMethod::fcl);
   EXPECT_EQ(p.alignment, AlignmentMeasure::pavlik);
   EXPECT_EQ(p.reduction, Reduction::exactly_one);
@@ -92,7 +92,7 @@ TEST(AddObject, DescribesABody) {
   EXPECT_FALSE(body.use_brep);
   EXPECT_TRUE(body.fixed);
   EXPECT_FALSE(body.selectable);
-  EXPECT_EQ(body.hybrid, Hybrid::off);
+  EXPECT_EQ(body.hybrid, hybrid::off);
   EXPECT_EQ(body.twist.linear, Vector3d(0, 0, 1));
   EXPECT_EQ(body.twist.angular, Vector3d(1, 0, 0));
 }

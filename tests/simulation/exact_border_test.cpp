@@ -93,7 +93,7 @@ Slide slide(Hybrid hybrid, Unknown unknown, double from, double to) {
 // The box's lower edge lies in the plate's plane, but for what 0.3 N press it in: far less than a nanometre. It must
 // not stumble over the far side of the groove because of that.
 TEST(Groove, IsCrossedByWhatSlidesFlatOverIt) {
-  const Slide known = slide(Hybrid::exact, Unknown::none, -0.1, 0.1);
+  const Slide known = slide(hybrid::exact, Unknown::none, -0.1, 0.1);
   EXPECT_LE(known.height_max, 1e-9);
   EXPECT_LE(known.step_max, 0.3);
 }
@@ -102,11 +102,11 @@ TEST(Groove, IsCrossedByWhatSlidesFlatOverIt) {
 // and no worse than theirs; and the way from one to the other is not worse than that either.
 TEST(Border, OfWhatIsKnownIsCrossedWithoutAJump) {
   constexpr double kBefore = -0.026;  // the box's front is a millimetre before the groove
-  const Slide before = slide(Hybrid::exact, Unknown::right, -0.1, kBefore);
+  const Slide before = slide(hybrid::exact, Unknown::right, -0.1, kBefore);
   EXPECT_LE(before.height_max, 1e-9);
   EXPECT_LE(before.step_max, 1e-4);
-  const Slide voxels = slide(Hybrid::off, Unknown::right, -0.1, 0.1);
-  const Slide across = slide(Hybrid::exact, Unknown::right, kBefore, 0.03);
+  const Slide voxels = slide(hybrid::off, Unknown::right, -0.1, 0.1);
+  const Slide across = slide(hybrid::exact, Unknown::right, kBefore, 0.03);
   EXPECT_LE(across.height_max, 1.1 * voxels.height_max);
   EXPECT_LE(across.step_max, 1.1 * voxels.step_max);
 }
@@ -139,8 +139,8 @@ TEST(Border, OfWhatIsKnownIsTheBorderOfWhatVoxelsAnswer) {
   for (const Unknown side : {Unknown::right, Unknown::left}) {
     for (const double height : {3e-4, 7e-4}) {
       SCOPED_TRACE(::testing::Message() << (side == Unknown::right ? "right " : "left ") << height);
-      const std::vector<Push> mixed = push_along(box_over_plate(Hybrid::exact, side), height);
-      Scene alone = box_over_plate(Hybrid::off, side);
+      const std::vector<Push> mixed = push_along(box_over_plate(hybrid::exact, side), height);
+      Scene alone = box_over_plate(hybrid::off, side);
       alone.bodies[0] = scenes::body_of("plate", half_plate(side), kVoxel);
       alone.bodies[0].fixed = true;
       const std::vector<Push> half = push_along(alone, height);

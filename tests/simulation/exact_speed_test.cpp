@@ -12,7 +12,7 @@ constexpr std::size_t kBox = 1;
 /// A box flies flat against a plate.
 Scene flying_box(double voxel_size) {
   Scene scene;
-  scene.parameters.hybrid = Hybrid::exact;
+  scene.parameters.hybrid = hybrid::exact;
   scene.parameters.integrator = Integrator::implicit;
   scene.parameters.all_bodies_are_dynamic = true;
   scene.parameters.duration = 0.03;

@@ -18,9 +18,9 @@ constexpr std::size_t kBlock = 0, kPin = 1;
 const Pose kBesideTheWall = {{0.0045, 0.001, 0.06}, Quaterniond::Identity()};
 
 /// The bodies are made once: the CAD kernel takes longer than all else here.
-Scene standing_pin(Hybrid hybrid = Hybrid::restore) {
+Scene standing_pin(Hybrid hybrid = hybrid::restore) {
   static const Scene made = [] {
-    Scene scene = scenes::brep_pin_in_hole(Hybrid::restore);
+    Scene scene = scenes::brep_pin_in_hole(hybrid::restore);
     scene.grasps.clear();
     scene.grasp_distance = 1e-9;
     scene.bodies[kPin].X_WB = kBesideTheWall;
@@ -79,7 +79,7 @@ std::vector<std::string> hybrid_events(const Scene& scene) {
 }
 
 TEST(Hybrid, OffLooksNothingUp) {
-  const Frame off = frame_of(standing_pin(Hybrid::off));
+  const Frame off = frame_of(standing_pin(hybrid::off));
   EXPECT_GT(off.of_link<std::uint32_t>("contacts"), 0U);
   EXPECT_EQ(off.of_link<std::uint32_t>("cache_hits") + off.of_link<std::uint32_t>("cache_misses"), 0U);
   EXPECT_EQ(off.constraint(), ConstraintKind::none);
@@ -88,12 +88,12 @@ TEST(Hybrid, OffLooksNothingUp) {
 // The voxels' steps push along the axis; a cylindrical constraint leaves the slide free. Alpha is 1 within the
 // clearance, so what is left along the axis is the rounding of a sum of floats.
 TEST(Hybrid, RestoreTakesAwayTheForceAlongTheAxis) {
-  const Frame restore = frame_of(standing_pin(Hybrid::restore));
+  const Frame restore = frame_of(standing_pin(hybrid::restore));
   EXPECT_EQ(restore.constraint(), ConstraintKind::cylindrical);
   EXPECT_EQ(restore.of_link<double>("alignment"), 1);
   EXPECT_GT(restore.force.head<2>().norm(), 1) << "the wall does not push any more";
   EXPECT_LE(std::abs(restore.force.z()), 1e-6 * restore.force.norm());
-  EXPECT_GT(std::abs(frame_of(standing_pin(Hybrid::off)).force.z()), 1) << "nothing to be restored";
+  EXPECT_GT(std::abs(frame_of(standing_pin(hybrid::off)).force.z()), 1) << "nothing to be restored";
 }
 
 // An implicit step restores normals before there are forces, an explicit one the forces: one law. Nobody holds the pin,
@@ -102,7 +102,7 @@ TEST(Hybrid, RestoreTakesAwayTheForceAlongTheAxis) {
 TEST(Hybrid, RestoresNormalsAsItRestoresForces) {
   for (const double x : {0.0, 0.0045, 0.0052}) {
     for (const double height : {0.06, 0.1, 0.14}) {  // the last: standing half in the rim
-      Scene scene = standing_pin(Hybrid::restore);
+      Scene scene = standing_pin(hybrid::restore);
       scene.bodies[kPin].X_WB.position = {x, 0.001, height};
       const Frame normals = frame_of(scene);
       scene.parameters.integrator = Integrator::semi_implicit;
@@ -134,9 +134,9 @@ TEST(Hybrid, OfACoaxialPinNothingTurnsIt) {
   double worst_off = 0, worst_restored = 0;
   for (const double turn : {0.2, 0.35, 0.8, 1.2}) {
     SCOPED_TRACE(turn);
-    const Frame restore = frame_of(coaxial_pin(Hybrid::restore, turn));
-    const Frame exact = frame_of(coaxial_pin(Hybrid::exact, turn));
-    worst_off = std::max(worst_off, std::abs(frame_of(coaxial_pin(Hybrid::off, turn)).torque.z()));
+    const Frame restore = frame_of(coaxial_pin(hybrid::restore, turn));
+    const Frame exact = frame_of(coaxial_pin(hybrid::exact, turn));
+    worst_off = std::max(worst_off, std::abs(frame_of(coaxial_pin(hybrid::off, turn)).torque.z()));
     worst_restored = std::max(worst_restored, std::abs(restore.torque.z()));
     EXPECT_EQ(restore.constraint(), ConstraintKind::cylindrical);
     EXPECT_EQ(exact.torque, Vector3d::Zero());
@@ -147,36 +147,36 @@ TEST(Hybrid, OfACoaxialPinNothingTurnsIt) {
 }
 
 TEST(Hybrid, OfAPairIsTheLesserMethodOfTheTwo) {
-  constexpr Hybrid kAll[] = {Hybrid::off, Hybrid::restore, Hybrid::blend};
-  for (const Hybrid of_block : kAll) {
-    for (const Hybrid of_pin : kAll) {
+  const Hybrid all[] = {hybrid::off, hybrid::restore, hybrid::blend};  // in the order of their precedence
+  for (std::size_t of_block = 0; of_block < 3; ++of_block) {
+    for (std::size_t of_pin = 0; of_pin < 3; ++of_pin) {
       Scene scene = standing_pin();
-      scene.bodies[kBlock].hybrid = of_block;
-      scene.bodies[kPin].hybrid = of_pin;
-      EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(std::min(of_block, of_pin)))))
-          << static_cast<int>(of_block) << static_cast<int>(of_pin);
+      scene.bodies[kBlock].hybrid = all[of_block];
+      scene.bodies[kPin].hybrid = all[of_pin];
+      EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(all[std::min(of_block, of_pin)]))))
+          << all[of_block]->name() << " " << all[of_pin]->name();
     }
   }
 }
 
 TEST(Hybrid, OfAPreciseBodyAndAnotherIsTheOthers) {
-  Scene scene = standing_pin(Hybrid::exact);
-  scene.bodies[kBlock].hybrid = Hybrid::restore;
-  EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(Hybrid::restore))));
+  Scene scene = standing_pin(hybrid::exact);
+  scene.bodies[kBlock].hybrid = hybrid::restore;
+  EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(hybrid::restore))));
 }
 
 TEST(Hybrid, MethodsDiffer) {
-  const Frame off = frame_of(standing_pin(Hybrid::off));
-  const Frame restore = frame_of(standing_pin(Hybrid::restore));
-  const Frame blend = frame_of(standing_pin(Hybrid::blend));
+  const Frame off = frame_of(standing_pin(hybrid::off));
+  const Frame restore = frame_of(standing_pin(hybrid::restore));
+  const Frame blend = frame_of(standing_pin(hybrid::blend));
   EXPECT_FALSE(off.same_response(restore));
   EXPECT_FALSE(off.same_response(blend));
   EXPECT_FALSE(restore.same_response(blend));
 }
 
 TEST(Hybrid, IsSwitchedOffAndOnWhileItRuns) {
-  const Frame off = frame_of(standing_pin(Hybrid::off));
-  for (const Hybrid method : {Hybrid::restore, Hybrid::blend}) {
+  const Frame off = frame_of(standing_pin(hybrid::off));
+  for (const Hybrid method : {hybrid::restore, hybrid::blend}) {
     const Frame on = frame_of(standing_pin(method));
     Simulation simulation(standing_pin(method), {});
     for (const std::size_t body : {kBlock, kPin}) {
@@ -191,34 +191,34 @@ TEST(Hybrid, IsSwitchedOffAndOnWhileItRuns) {
 
 // Precise contacts are not counted as voxels' look-ups; off, the same pair answers with its voxels.
 TEST(Hybrid, OfPreciseBodiesIsSwitchedToTheirVoxels) {
-  Simulation simulation(standing_pin(Hybrid::exact), {});
+  Simulation simulation(standing_pin(hybrid::exact), {});
   EXPECT_EQ(Frame(simulation).of_link<std::uint32_t>("contacts"), 0U) << "half a millimetre of clearance is no contact";
   EXPECT_EQ(simulation.cost().points_tested, 0U);
   EXPECT_EQ(simulation.cost().bytes_touched, 0U);
   simulation.set_hybrid_enabled(kPin, false);
-  EXPECT_TRUE(Frame(simulation).same_response(frame_of(standing_pin(Hybrid::off))));
+  EXPECT_TRUE(Frame(simulation).same_response(frame_of(standing_pin(hybrid::off))));
   EXPECT_GE(simulation.cost().bytes_touched, 3 * sizeof(float) * simulation.cost().points_tested);
 }
 
 TEST(Hybrid, MayBeginSwitchedOff) {
   Scene scene = standing_pin();
   scene.bodies[kPin].hybrid_enabled = false;
-  EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(Hybrid::off))));
+  EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(hybrid::off))));
 }
 
 TEST(Hybrid, WithOneBodyWithoutABRepStaysWithTheVoxelsAndSaysSo) {
-  for (const Hybrid method : {Hybrid::restore, Hybrid::blend, Hybrid::exact}) {
+  for (const Hybrid method : {hybrid::restore, hybrid::blend, hybrid::exact}) {
     Scene scene = standing_pin(method);
     scene.bodies[kPin].use_brep = false;
-    EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(Hybrid::off))));
+    EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(hybrid::off))));
     EXPECT_EQ(hybrid_events(scene),
               std::vector<std::string>{"'pin' has no b-rep: its contacts with 'block' stay with the voxels"});
   }
 }
 
 TEST(Hybrid, SaysNothingWhereItIsNotAskedForOrEverythingIsKnown) {
-  EXPECT_EQ(hybrid_events(standing_pin(Hybrid::restore)), std::vector<std::string>{});
-  Scene off = standing_pin(Hybrid::off);
+  EXPECT_EQ(hybrid_events(standing_pin(hybrid::restore)), std::vector<std::string>{});
+  Scene off = standing_pin(hybrid::off);
   off.bodies[kPin].use_brep = false;
   EXPECT_EQ(hybrid_events(off), std::vector<std::string>{});
   Scene no_breps = standing_pin();
@@ -228,16 +228,16 @@ TEST(Hybrid, SaysNothingWhereItIsNotAskedForOrEverythingIsKnown) {
 
 // Freeform faces count as `other`: no recognizer takes them, and the voxels' answer stands, bit for bit.
 TEST(Hybrid, LeavesFreeformFacesToTheVoxels) {
-  for (const Hybrid method : {Hybrid::restore, Hybrid::blend}) {
+  for (const Hybrid method : {hybrid::restore, hybrid::blend}) {
     Scene scene = standing_pin(method);
     for (Face& face : scene.bodies[kPin].parts[0].faces) face.surface = OtherSurface();
     for (Edge& edge : scene.bodies[kPin].parts[0].edges) edge.curve = OtherCurve();
-    EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(Hybrid::off))));
+    EXPECT_TRUE(frame_of(scene).same_response(frame_of(standing_pin(hybrid::off))));
   }
 }
 
 TEST(Hybrid, LooksEveryContactUpOnceAndRecognizesInTheFirstFrameOnly) {
-  for (const Hybrid method : {Hybrid::restore, Hybrid::blend}) {
+  for (const Hybrid method : {hybrid::restore, hybrid::blend}) {
     Simulation simulation(standing_pin(method), {});
     const Frame first(simulation);
     const auto contacts = first.of_link<std::uint32_t>("contacts");
@@ -254,7 +254,7 @@ TEST(Hybrid, LooksEveryContactUpOnceAndRecognizesInTheFirstFrameOnly) {
 }
 
 TEST(Hybrid, TotalsAreTheSumsOfTheFrames) {
-  Scene scene = scenes::brep_pin_in_hole(Hybrid::restore);
+  Scene scene = scenes::brep_pin_in_hole(hybrid::restore);
   scene.parameters.duration = 0.5;
   Simulation simulation(scene, {});
   std::uint64_t hits = 0, misses = 0, cylindrical = 0;
@@ -264,7 +264,7 @@ TEST(Hybrid, TotalsAreTheSumsOfTheFrames) {
     misses += frame.of_link<std::uint32_t>("cache_misses");
     cylindrical += frame.constraint() == ConstraintKind::cylindrical ? 1 : 0;
   }
-  const Simulation::Totals& totals = simulation.totals();
+  const Totals& totals = simulation.totals();
   EXPECT_EQ(totals.cache_hits, hits);
   EXPECT_EQ(totals.cache_misses, misses);
   EXPECT_EQ(totals.cache_hits + totals.cache_misses, totals.contacts);

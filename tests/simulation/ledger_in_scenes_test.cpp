@@ -58,16 +58,16 @@ double least_lost(Scene scene) {
 
 TEST(LedgerInScenes, ContactsThatAMethodChangedGiveNoEnergy) {
   for (const Integrator integrator : {Integrator::semi_implicit, Integrator::implicit})
-    for (const Hybrid hybrid : {Hybrid::restore, Hybrid::blend, Hybrid::exact}) {
+    for (const Hybrid hybrid : {hybrid::restore, hybrid::blend, hybrid::exact}) {
       Scene scene = scenes::brep_pin_in_hole(hybrid);
       scene.parameters.integrator = integrator;
-      EXPECT_GE(least_lost(std::move(scene)), -1e-12) << static_cast<int>(hybrid);
+      EXPECT_GE(least_lost(std::move(scene)), -1e-12) << hybrid->name();
     }
 }
 
 // What the limit is there for: a voxel that a pin has just entered is a step deep at once.
 TEST(LedgerInScenes, WithoutTheLimitVoxelsGiveEnergy) {
-  Scene scene = scenes::brep_pin_in_hole(Hybrid::restore);
+  Scene scene = scenes::brep_pin_in_hole(hybrid::restore);
   scene.parameters.integrator = Integrator::implicit;
   scene.parameters.passive_contacts = false;
   EXPECT_LT(least_lost(std::move(scene)), -1e-6);

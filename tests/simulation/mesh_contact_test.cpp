@@ -14,7 +14,7 @@ Scene falling_box() {
   Scene scene;
   SimulationParameters& p = scene.parameters;
   p.contact = ContactMethod::fcl;
-  p.hybrid = Hybrid::off;
+  p.hybrid = hybrid::off;
   p.all_bodies_are_dynamic = true;
   p.gravity = {0, 0, -9.81};
   p.duration = 2;
@@ -56,11 +56,11 @@ Scene pin_in_hole(Hybrid hybrid, ContactMethod contact) {
 }
 
 TEST(MeshContact, LeavesHybridMethodsOutAndSaysSo) {
-  Simulation exact(pin_in_hole(Hybrid::exact, ContactMethod::fcl), {});
+  Simulation exact(pin_in_hole(hybrid::exact, ContactMethod::fcl), {});
   ASSERT_EQ(exact.events().size(), 1U);
   EXPECT_EQ(exact.events().front().text,
             "contact = \"fcl\" finds triangles, not voxels with faces: every contact is as with hybrid = \"off\"");
-  Simulation off(pin_in_hole(Hybrid::off, ContactMethod::fcl), {});
+  Simulation off(pin_in_hole(hybrid::off, ContactMethod::fcl), {});
   EXPECT_TRUE(off.events().empty());
   run(exact);
   run(off);
@@ -70,7 +70,7 @@ TEST(MeshContact, LeavesHybridMethodsOutAndSaysSo) {
 
 TEST(MeshContact, LeavesAllOfTheClearanceFree) {
   const auto contacts = [](ContactMethod method) {
-    Scene scene = pin_in_hole(Hybrid::off, method);
+    Scene scene = pin_in_hole(hybrid::off, method);
     scene.grasps.clear();
     scene.grasp_distance = 1e-9;
     scene.bodies[kMoving].X_WB = {{0.0045, 0.001, 0.06}, Quaterniond::Identity()};  // 0.39 mm from the wall

@@ -27,7 +27,7 @@ Scene two_free_boxes(Hybrid hybrid) {
 
 class EveryMethod : public testing::TestWithParam<Hybrid> {};
 INSTANTIATE_TEST_SUITE_P(Hybrid, EveryMethod,
-                         testing::Values(Hybrid::off, Hybrid::restore, Hybrid::blend, Hybrid::exact));
+                         testing::Values(hybrid::off, hybrid::restore, hybrid::blend, hybrid::exact));
 
 TEST_P(EveryMethod, KeepsTheMomentumOfTwoFreeBodies) {
   Simulation simulation(two_free_boxes(GetParam()), {});
@@ -88,7 +88,7 @@ TEST_P(EveryMethod, TellsOfALinkAndOfAFixedBodyWhatActedOnTheOneThatMoves) {
 /// The voxels answer before the precise surfaces do, and at once with a depth: they must not throw the pin out.
 TEST(SwitchingExactOff, GivesNoEnergy) {
   Scene scene;
-  scene.parameters.hybrid = Hybrid::exact;
+  scene.parameters.hybrid = hybrid::exact;
   scene.parameters.duration = 1;
   scene.bodies = {scenes::body_of("block",
                                   scenes::difference(scenes::solid(Solid::Kind::box, {0.2, 0.2, 0.1}),
@@ -115,7 +115,7 @@ TEST(SwitchingExactOff, GivesNoEnergy) {
 }
 
 TEST(ConstraintFrames, CountAFrameOnceHoweverManyLinksAreHeld) {
-  Scene scene = scenes::brep_pin_in_hole(Hybrid::restore);
+  Scene scene = scenes::brep_pin_in_hole(hybrid::restore);
   scene.devices.clear();
   scene.grasps.clear();
   scene.parameters.duration = 0.02;

@@ -38,8 +38,8 @@ class PinAt {
 // the rim's voxels, and of the push along the axis at most so much may be taken.
 TEST(RestoredRim, HoldsAPinThatStandsBesideItsHole) {
   for (const double voxel : {0.0045, 0.002}) {
-    PinAt off(Hybrid::off, voxel);
-    PinAt restored(Hybrid::restore, voxel);
+    PinAt off(hybrid::off, voxel);
+    PinAt restored(hybrid::restore, voxel);
     for (const double beside : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0}) {
       for (const double depth : {0.0, 0.1, 0.25, 0.5}) {
         const double taken = depth * std::max(0.0, 1 - beside);
@@ -55,7 +55,7 @@ TEST(RestoredRim, HoldsAPinThatStandsBesideItsHole) {
 // A voxel deep and within its clearance nothing holds the pin up: its slide is free.
 TEST(RestoredRim, LetsAPinGoInOnceItsEndIsInTheHole) {
   for (const double voxel : {0.0045, 0.002}) {
-    PinAt restored(Hybrid::restore, voxel);
+    PinAt restored(hybrid::restore, voxel);
     const Vector3d force = restored.force(kClearance - 0.1 * voxel, 2 * voxel);
     EXPECT_GT(force.head<2>().norm(), 0.1);
     EXPECT_LE(std::abs(force.z()), 1e-5 * force.norm());

@@ -106,8 +106,8 @@ TEST(StepIsQuiet, WhileAPinIsPushedIntoAHole) {
 // Recognition, memo, restoration, the comparator's solver and the exact response: all that they need is there before
 // the first frame.
 TEST(StepIsQuiet, UnderEveryHybridMethod) {
-  for (const Hybrid hybrid : {Hybrid::off, Hybrid::restore, Hybrid::blend, Hybrid::exact}) {
-    SCOPED_TRACE(static_cast<int>(hybrid));
+  for (const Hybrid hybrid : {hybrid::off, hybrid::restore, hybrid::blend, hybrid::exact}) {
+    SCOPED_TRACE(hybrid->name());
     Simulation simulation(scenes::brep_pin_in_hole(hybrid), {});
     const Quiet quiet = run_counted(simulation);
     ASSERT_GT(quiet.contacts, 0U) << "the pin never met the hole: this test would prove nothing";
@@ -130,7 +130,7 @@ TEST(StepIsQuiet, WhileBoxesFallOnEachOther) {
 TEST(StepIsQuiet, WhileHeadsAreTracked) {
   Scene scene = scenes::pin_in_hole();
   for (const char* tracker : {"geometric", "scaat", "vrpn-compatible"})
-    scene.heads.push_back(
+    scene.companions.push_back(
         std::make_shared<wii::Head>(tracker, wii::make_virtual_source({.name = tracker}), tracker, Pose{}));
   Simulation simulation(std::move(scene), {});
   const Quiet quiet = run_counted(simulation);

@@ -11,6 +11,7 @@
 #include "engine/voxel/voxelize.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/voxel/shapes.hpp"
 
 namespace verisim {
 namespace {
@@ -323,18 +324,75 @@ TEST(DeclaredFeatures, TellsEqualEntitiesFromOthersByTheirNumbers) {
   EXPECT_EQ(declared.entities_in(2), 2U);
 }
 
+constexpr double kRing = 0.012, kTube = 0.004;  // m
+
+/// Half of the tube's profile or all of it, from one angle to the other.
+std::vector<std::array<double, 2>> tube_profile(double from, double to) {
+  constexpr int kSteps = 32;
+  std::vector<std::array<double, 2>> profile;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = from + (to - from) * i / kSteps;
+    profile.push_back({kRing + kTube * std::cos(angle), kTube * std::sin(angle)});
+  }
+  return profile;
+}
+
+/// Gives the voxels that the torus passes through the torus.
+DeclaredFeatures near_torus(const VoxelBody& body) {
+  DeclaredFeatures declared;
+  const Face face = {.surface = Torus{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), kRing, kTube, false},
+                     .edges = {}};
+  const DeclaredFeatures::Entity entity = face;
+  for (std::uint32_t i = 0; i < body.voxmap.surface_count; ++i) {
+    const Vector3d p = center(body, i);
+    const double from_tube = std::hypot(std::hypot(p.x(), p.y()) - kRing, p.z()) - kTube;
+    if (std::abs(from_tube) > 0.5 * body.voxmap.voxel_size) continue;
+    declared.assign(body, i, declared.add("ring", {&entity, 1}));
+  }
+  return declared;
+}
+
+// The groove of a bearing's inner ring has the material outside of the tube that its balls fill, a hoop has it inside.
+TEST(DeclaredFeatures, TakeATorusGrooveForAHoleAndAHoopForNone) {
+  const auto torus_of = [](const std::vector<std::array<double, 2>>& profile) {
+    const VoxelBody body = voxelize("ring", shapes::turned(profile, 96), {.voxel_size = 0.001});
+    const DeclaredFeatures declared = near_torus(body);
+    EXPECT_EQ(declared.faces().size(), 1U);
+    return std::get<Torus>(declared.faces().front().surface);
+  };
+  constexpr double kPi = std::numbers::pi;
+  EXPECT_FALSE(torus_of(tube_profile(0, 2 * kPi)).hole);
+  std::vector<std::array<double, 2>> grooved = {{0.006, -0.008}, {kRing, -0.008}};
+  for (const auto& p : tube_profile(1.5 * kPi, 0.5 * kPi)) grooved.push_back(p);
+  for (const auto& p : {std::array{kRing, kTube}, {kRing, 0.008}, {0.006, 0.008}}) grooved.push_back(p);
+  EXPECT_TRUE(torus_of(grooved).hole);
+}
+
+const Vector3d kO = Vector3d::Zero(), kX = Vector3d::UnitX(), kZ = Vector3d::UnitZ();
+
+// What is wrong with one number of each kind is entity_check_test's; here: it is asked, and what only declaring
+// forbids.
 TEST(DeclaredFeatures, RefuseEntitiesThatAreNone) {
   DeclaredFeatures declared;
   const auto refused = [&](const DeclaredFeatures::Entity& entity, const char* why) {
     test::expect_refused([&] { return declared.add("pin", {&entity, 1}); }, why);
   };
-  refused(cylinder_face(0), "'pin': a declared entity has a radius or angle of 0");
-  refused(cylinder_face(-1), "has a radius or angle of -1");
-  refused(cylinder_face(std::nan("")), "not finite");
-  refused(Face{.surface = Plane{{0, 0, 0}, {0, 0, 2}, {1, 0, 0}}, .edges = {}}, "normal has length 2");
+  const auto face = [](const Surface& surface) { return Face{.surface = surface, .edges = {}}; };
+  refused(face(Cylinder{kO, kZ, kX, 0, false}),
+          "'pin': a declared cylinder has a radius of 0 m but it must be above 0");
+  refused(face(Cone{kO, kZ, kX, -0.01, 0.5, false}),
+          "'pin': a declared cone has a radius of -0.01 m but it must be 0 or more");
+  refused(face(Plane{kO, 2 * kZ, kX}), "'pin': a declared plane has a normal of length 2");
+  refused(face(Torus{kO, kZ, kX, 0.02, 0.0201, false}),
+          "'pin': a declared torus has a minor radius of 0.0201 m but it must not be above the major one, 0.02 m");
+  refused(face(OtherSurface{}), "'pin': a declared other has no equation");
   Edge edge;
-  edge.curve = Circle{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), 0};
-  refused(edge, "radius or angle of 0");
+  edge.curve = Circle{kO, kZ, kX, 0};
+  refused(edge, "'pin': a declared circle has a radius of 0 m");
+  edge.curve = OtherCurve{};
+  refused(edge, "no equation");
+  EXPECT_EQ(declared.size(), 0U);
+  EXPECT_TRUE(declared.faces().empty());
 }
 
 }  // namespace

@@ -64,33 +64,5 @@ TEST(FeatureSets, UseEveryNumberAndThenRefuseInsteadOfWrappingAround) {
   test::expect_refused([&] { return sets.intern(Set{7}); }, "'comb': more than 65535 different sets");
 }
 
-TEST(FeatureSets, ComeBackFromTheirTables) {
-  test::Inputs inputs(2);
-  FeatureSets sets("block");
-  for (int i = 0; i < 500; ++i) sets.intern(random_set(inputs, 20));
-  const FeatureSets back = FeatureSets::from_tables("block", sets.to_tables(), 20);
-  ASSERT_EQ(back.size(), sets.size());
-  for (std::size_t id = 0; id < sets.size(); ++id) {
-    EXPECT_EQ(stored(back, static_cast<FeatureSetId>(id)), stored(sets, static_cast<FeatureSetId>(id)));
-  }
-}
-
-TEST(FeatureSets, RefuseDamagedTables) {
-  FeatureSets sets("block");
-  sets.intern(Set{1, 2});
-  sets.intern(Set{4});
-  const auto expect_refused = [](const std::vector<NamedArray>& tables, const char* why, std::size_t entities = 9) {
-    test::expect_refused([&] { return FeatureSets::from_tables("block", tables, entities); }, why);
-  };
-  const std::vector<NamedArray> good = sets.to_tables();
-  expect_refused({good[0]}, "'feature_set_entities' is missing");
-  expect_refused(good, "do not fit together", 4);  // entity 4 of 4
-  const auto offsets = [](std::vector<std::uint32_t> v) {
-    return NamedArray::from<std::uint32_t>("feature_set_offsets", v, {v.size()}, "1", "");
-  };
-  expect_refused({offsets({0, 0, 2, 9}), good[1]}, "do not fit together");
-  expect_refused({offsets({0, 0, 2, 2, 3}), good[1]}, "do not fit together");  // the empty set twice
-}
-
 }  // namespace
 }  // namespace verisim

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-struct Frame {
-  explicit Frame(test::Inputs& inputs) : point(inputs.vector(3)) {
+struct Axes {
+  explicit Axes(test::Inputs& inputs) : point(inputs.vector(3)) {
     const Matrix3d m = inputs.rotation().toRotationMatrix();
     x = m.col(0), z = m.col(2);
   }
@@ -29,7 +29,7 @@ Face face_on(const Surface& surface, double v_low = 0, double v_high = 0) {
 
 /// One surface of each kind, some hardly larger than a box, some tori that meet themselves.
 Face random_face(test::Inputs& inputs, int kind) {
-  const Frame f(inputs);
+  const Axes f(inputs);
   const double r = inputs.between(0.2, 4);
   switch (kind) {
     case 0:
@@ -76,7 +76,7 @@ TEST(GridSurface, TouchesABoxExactlyWhereItsFunctionVanishesInIt) {
   test::Inputs inputs(11);
   int touched = 0, apart = 0;
   for (int i = 0; i < 4200; ++i) {
-    const GridSurface surface(random_face(inputs, i % 7), Vector3d::Zero(), 1);
+    const GridSurface surface = *GridSurface::from(random_face(inputs, i % 7), Vector3d::Zero(), 1);
     const GridBox box{inputs.vector(4), 0.5};
     const Dense dense = ask_densely(surface, box, kPoints);
     const bool touches = surface.touches(box);
@@ -95,7 +95,7 @@ TEST(GridSurface, FindsASurfaceThatReachesIntoTheBoxByAMillionth) {
   const Vector3d center(0.5, 0.5, 0.5);
   for (const double inside : {1e-6, -1e-6}) {
     const auto touches = [&](const Face& face) {
-      return GridSurface(face, Vector3d::Zero(), 1).touches({center, 0.5});
+      return GridSurface::from(face, Vector3d::Zero(), 1)->touches({center, 0.5});
     };
     const double reach = 3 + inside;  // from x = -3 to the wall x = 0
     const Vector3d middle(-3, 0.5, 0.5), z = Vector3d::UnitZ(), x = Vector3d::UnitX();
@@ -111,7 +111,7 @@ TEST(GridSurface, FindsASurfaceThatReachesIntoTheBoxByAMillionth) {
 TEST(GridSurface, GivesPointsOfItselfInTheBoxWheneverItTouches) {
   test::Inputs inputs(12);
   for (int i = 0; i < 4200; ++i) {
-    const GridSurface surface(random_face(inputs, i % 7), Vector3d::Zero(), 1);
+    const GridSurface surface = *GridSurface::from(random_face(inputs, i % 7), Vector3d::Zero(), 1);
     const GridBox box{inputs.vector(4), 0.5};
     std::vector<Vector3d> probes;
     surface.add_probes(box, probes);
@@ -125,23 +125,29 @@ TEST(GridSurface, GivesPointsOfItselfInTheBoxWheneverItTouches) {
   }
 }
 
-TEST(GridSurface, OfRadiusZeroIsItsAxisOrCentreAndNothingElse) {
+// Coordinates of the grid, whatever its scale: where the surface was, the grid's surface is.
+TEST(GridSurface, IsTheSurfaceOfItsFaceScaledAndMoved) {
+  test::Inputs inputs(14);
+  for (int i = 0; i < 700; ++i) {
+    const Face face = random_face(inputs, i % 7);
+    const Vector3d origin = inputs.vector(5), p = inputs.vector(4);
+    const double scale = inputs.between(0.1, 300);
+    const AnalyticSurface surface = *AnalyticSurface::from(face);
+    const GridSurface grid = *GridSurface::from(face, origin, scale);
+    const Vector3d there = scale * (p - origin);
+    EXPECT_NEAR(grid.value(grid.to_local(there)), scale * surface.at(p).distance, 1e-9 * scale) << "case " << i;
+    EXPECT_LT((grid.foot(there) - scale * (surface.foot(p) - origin)).norm(), 1e-6 * scale) << "case " << i;
+    EXPECT_LT((grid.to_grid(grid.to_local(there)) - there).norm(), 1e-9 * scale) << "case " << i;
+  }
+}
+
+TEST(GridSurface, IsNothingForAFaceWithoutEquation) {
   const Vector3d z = Vector3d::UnitZ(), x = Vector3d::UnitX();
-  const GridBox at_origin{Vector3d::Zero(), 0.5}, beside{{2, 0, 0}, 0.5}, above{{0, 0, 2}, 0.5};
-  const auto made = [&](const Surface& surface) { return GridSurface(face_on(surface), Vector3d::Zero(), 1); };
-  const GridSurface ball = made(Sphere{{0, 0, 0}, z, x, 0, false});
-  EXPECT_TRUE(ball.touches(at_origin));
-  EXPECT_FALSE(ball.touches(beside));
-  EXPECT_FALSE(ball.touches(above));
-  const GridSurface needle = made(Cylinder{{0, 0, 0}, z, x, 0, false});
-  EXPECT_TRUE(needle.touches(at_origin));
-  EXPECT_FALSE(needle.touches(beside));
-  EXPECT_TRUE(needle.touches(above));
   for (const Surface& broken :
-       {Surface(Sphere{{0, 0, 0}, z, x, -1, false}), Surface(Sphere{{0, NAN, 0}, z, x, 1, false}),
-        Surface(Cone{{0, 0, 0}, z, x, 1, 0, false})}) {
-    EXPECT_EQ(made(broken).shape(), GridSurface::Shape::other);
-    EXPECT_FALSE(made(broken).touches(at_origin));
+       {Surface(Sphere{{0, 0, 0}, z, x, 0, false}), Surface(Cylinder{{0, 0, 0}, z, x, -1, false}),
+        Surface(Sphere{{0, NAN, 0}, z, x, 1, false}), Surface(Cone{{0, 0, 0}, z, x, 1, 0, false}),
+        Surface(OtherSurface{})}) {
+    EXPECT_FALSE(GridSurface::from(face_on(broken), Vector3d::Zero(), 1));
   }
 }
 
@@ -153,7 +159,7 @@ Edge edge_on(const Curve& curve, double from, double to) {
 }
 
 Edge random_edge(test::Inputs& inputs, int kind) {
-  const Frame f(inputs);
+  const Axes f(inputs);
   const double from = inputs.between(-3, 3), span = inputs.between(0.01, kTurn);
   if (kind == 0) return edge_on(Line{f.point, f.z}, from, from + span);
   if (kind == 1) return edge_on(Circle{f.point, f.z, f.x, inputs.between(0.1, 4)}, from, from + span);
@@ -210,7 +216,8 @@ TEST(GridCurve, OfLengthOrRadiusZeroIsAPoint) {
 
 /// A square with a round hole and a square one, on a plane; point by point against the definition.
 TEST(FaceTrim, KnowsAPlateWithHoles) {
-  const GridSurface plane(face_on(Plane{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX()}), Vector3d::Zero(), 1);
+  const GridSurface plane =
+      *GridSurface::from(face_on(Plane{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX()}), Vector3d::Zero(), 1);
   std::vector<GridCurve> bounds;
   const auto add_square = [&](double cx, double cy, double half) {
     const Vector3d c(cx, cy, 0), x = Vector3d::UnitX(), y = Vector3d::UnitY();
@@ -238,7 +245,7 @@ TEST(FaceTrim, KnowsAPlateWithHoles) {
 /// A window cut out of a cylinder, from angle 1 to 2 and height -1 to 3: the wall is the rest between -5 and 5.
 TEST(FaceTrim, KnowsATubeWithAWindow) {
   const Vector3d x = Vector3d::UnitX(), z = Vector3d::UnitZ();
-  const GridSurface tube(face_on(Cylinder{{0, 0, 0}, z, x, 4, false}), Vector3d::Zero(), 1);
+  const GridSurface tube = *GridSurface::from(face_on(Cylinder{{0, 0, 0}, z, x, 4, false}), Vector3d::Zero(), 1);
   const auto at = [](double u, double v) { return Vector3d(4 * std::cos(u), 4 * std::sin(u), v); };
   std::vector<GridCurve> bounds;
   for (const double v : {-5.0, 5.0}) bounds.push_back(placed(edge_on(Circle{{0, 0, v}, z, x, 4}, 0, kTurn)));
@@ -255,7 +262,8 @@ TEST(FaceTrim, KnowsATubeWithAWindow) {
 }
 
 TEST(FaceTrim, IsLooseIfItsKnownPointsContradictItsBounds) {
-  const GridSurface plane(face_on(Plane{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX()}), Vector3d::Zero(), 1);
+  const GridSurface plane =
+      *GridSurface::from(face_on(Plane{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX()}), Vector3d::Zero(), 1);
   const std::vector<GridCurve> bounds = {
       placed(edge_on(Circle{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), 3}, 0, kTurn))};
   EXPECT_FALSE(FaceTrim(plane, bounds, {{1, 0.2, 0}, {-1, 1, 0}}, 1e-8).is_loose());

@@ -104,7 +104,7 @@ TEST(Pointshell, WhereFacesCancelTheLargestDecides) {
   EXPECT_EQ(normal_at(body, {0.5, 0.5, 0.01}), Vector3d(0, 0, 1));
 }
 
-TEST(Pointshell, TrianglesWithoutAreaHaveNoSay) {
+TEST(Pointshell, TrianglesWithoutAreaHaveNoWeight) {
   TriangleMesh mesh = shapes::box({-1, -1, -1}, {1, 1, 1});
   const VoxelBody clean = voxelize("box", mesh, {.voxel_size = 0.125});
   mesh.triangles.push_back({0, 0, 1});

@@ -1,16 +1,17 @@
-// Watertight meshes with known answers, made here so that the voxel tests depend on no other module. Lengths in metres;
+// Watertight meshes with known answers, made here so that the voxel tests depend on no other folder. Lengths in metres;
 // triangles counter-clockwise seen from outside.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/mesh.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace verisim::shapes {
 
@@ -35,14 +36,7 @@ inline TriangleMesh box(const Vector3d& low, const Vector3d& high) {
 
 /// `mesh` and `other` side by side in one mesh.
 inline TriangleMesh both(TriangleMesh mesh, const TriangleMesh& other) {
-  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + base, b + base, c + base});
-  return mesh;
-}
-
-inline TriangleMesh inside_out(TriangleMesh mesh) {
-  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  test::append(mesh, other);
   return mesh;
 }
 
@@ -52,26 +46,28 @@ TriangleMesh mapped(TriangleMesh mesh, const Map& map) {
   return mesh;
 }
 
-/// Every triangle in four at its edge midpoints.
-inline TriangleMesh in_four(const TriangleMesh& mesh) {
-  TriangleMesh result;
-  result.vertices = mesh.vertices;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
-  const auto between = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [at, is_new] = middle.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(result.vertices.size()));
-    if (is_new) result.vertices.emplace_back(0.5 * (result.vertices[a] + result.vertices[b]));
-    return at->second;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const std::uint32_t ab = between(a, b), bc = between(b, c), ca = between(c, a);
-    result.triangles.insert(result.triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
-  return result;
-}
-
 inline std::array<double, 2> on_circle(int i, int facets) {
   const double angle = 2 * std::numbers::pi * i / facets;
   return {pinned::cos(angle), pinned::sin(angle)};
+}
+
+/// A closed profile of (distance from z, z) turned about z; counter-clockwise around the material, and nowhere on z.
+inline TriangleMesh turned(const std::vector<std::array<double, 2>>& profile, int facets) {
+  TriangleMesh mesh;
+  const auto n = static_cast<std::uint32_t>(profile.size());
+  const auto around = static_cast<std::uint32_t>(facets);
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const auto [c, s] = on_circle(static_cast<int>(k), facets);
+    for (const auto& [rho, z] : profile) mesh.vertices.emplace_back(rho * c, rho * s, z);
+  }
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const std::uint32_t here = k * n, there = (k + 1) % around * n;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t j = (i + 1) % n;
+      add_quad(mesh, {here + i, there + i, there + j, here + j});
+    }
+  }
+  return mesh;
 }
 
 /// A prism of n facets inscribed in the cylinder of the given radius about z, from z = 0 to `height`.
@@ -138,7 +134,7 @@ inline TriangleMesh sphere(double radius, int times) {
     mesh.vertices.emplace_back(-Vector3d::Unit(axis));
   }
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int i = 0; i < times; ++i) mesh = in_four(mesh);
+  for (int i = 0; i < times; ++i) mesh = test::subdivide(mesh);
   return mapped(std::move(mesh), [&](const Vector3d& p) { return Vector3d(radius * p.normalized()); });
 }
 

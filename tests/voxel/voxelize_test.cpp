@@ -9,7 +9,7 @@ namespace verisim {
 namespace {
 
 using shapes::both;
-using shapes::inside_out;
+using test::turned_inside_out;
 
 TriangleMesh tilted(const TriangleMesh& mesh) {
   const Eigen::AngleAxisd tilt(0.7, Vector3d(1, 2, 3).normalized());
@@ -24,7 +24,7 @@ struct Case {
 
 std::vector<Case> cases() {
   const TriangleMesh cube = shapes::box({0, 0, 0}, {1, 1, 1});
-  const TriangleMesh hollow = both(shapes::sphere(1, 2), inside_out(shapes::sphere(0.75, 2)));
+  const TriangleMesh hollow = both(shapes::sphere(1, 2), turned_inside_out(shapes::sphere(0.75, 2)));
   return {
       {"cube", cube, 0.1},
       {"tilted cube", tilted(cube), 0.081},
@@ -65,7 +65,7 @@ TEST(Voxelize, CountsTheHullOfABox) {
 
 // Loaders turn shells outward; one that still looks inward bounds nothing, however it is voxelized.
 TEST(Voxelize, FindsNoInsideInAnInvertedShell) {
-  const VoxelBody body = voxelize("box", inside_out(shapes::box({0, 0, 0}, {1, 1, 1})), {.voxel_size = 0.05});
+  const VoxelBody body = voxelize("box", turned_inside_out(shapes::box({0, 0, 0}, {1, 1, 1})), {.voxel_size = 0.05});
   EXPECT_GT(body.voxmap.layer_at({0.5, 0.5, 0.5}), 0);
 }
 
@@ -78,7 +78,7 @@ TEST(Voxelize, KeepsItsResultWhenTrianglesAreCutInFour) {
   for (const Case& part : parts) {
     SCOPED_TRACE(part.name);
     const VoxelBody whole = voxelize("whole", part.mesh, {.voxel_size = part.voxel_size});
-    const TriangleMesh fine = shapes::in_four(shapes::in_four(part.mesh));
+    const TriangleMesh fine = test::subdivide(test::subdivide(part.mesh));
     const VoxelBody cut = voxelize("cut", fine, {.voxel_size = part.voxel_size});
     EXPECT_EQ(whole.voxmap.brick_block, cut.voxmap.brick_block);
     EXPECT_EQ(whole.voxmap.surface_mask, cut.voxmap.surface_mask);
@@ -101,7 +101,7 @@ TEST(Voxelize, FindsEveryPocket) {
   for (int i = 0; i < kPockets * kPockets * kPockets; ++i) {
     centers.emplace_back(pitch * Vector3d(i % 20 + 0.5, i / 20 % 20 + 0.5, i / 400 + 0.5));
     const Vector3d arm = Vector3d::Constant(0.2 * pitch);
-    mesh = both(std::move(mesh), inside_out(shapes::box(centers.back() - arm, centers.back() + arm)));
+    mesh = both(std::move(mesh), turned_inside_out(shapes::box(centers.back() - arm, centers.back() + arm)));
   }
   const Voxmap map = voxelize("pockets", mesh, {.voxel_size = pitch / 10}).voxmap;
   for (const Vector3d& center : centers) {
@@ -112,9 +112,9 @@ TEST(Voxelize, FindsEveryPocket) {
 
 // The ray of a winding number meets edges and corners of this mesh wherever it goes: all lie on voxel centres' rows.
 TEST(Voxelize, IsNotConfusedByEdgesOnTheRay) {
-  const TriangleMesh outer = shapes::in_four(shapes::in_four(shapes::in_four(shapes::box({0, 0, 0}, {2, 2, 2}))));
-  const TriangleMesh inner = shapes::in_four(shapes::in_four(shapes::box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5})));
-  const Voxmap map = voxelize("nested", both(outer, inside_out(inner)), {.voxel_size = 0.0625}).voxmap;
+  const TriangleMesh outer = test::subdivide(test::subdivide(test::subdivide(shapes::box({0, 0, 0}, {2, 2, 2}))));
+  const TriangleMesh inner = test::subdivide(test::subdivide(shapes::box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5})));
+  const Voxmap map = voxelize("nested", both(outer, turned_inside_out(inner)), {.voxel_size = 0.0625}).voxmap;
   EXPECT_GT(map.layer_at({1, 1, 1}), 0);
   EXPECT_LT(map.layer_at({0.25, 0.25, 0.25}), 0);
   EXPECT_GT(map.layer_at({-0.25, 1, 1}), 0);
@@ -135,8 +135,9 @@ TEST(Voxelize, GivesTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Voxmap, ClearanceCountsBricksToTheSurface) {
-  const VoxelBody body = voxelize("hollow", both(shapes::box({0, 0, 0}, {3, 1, 1}), inside_out(shapes::sphere(0.1, 3))),
-                                  {.voxel_size = 0.01});
+  const VoxelBody body =
+      voxelize("hollow", both(shapes::box({0, 0, 0}, {3, 1, 1}), turned_inside_out(shapes::sphere(0.1, 3))),
+               {.voxel_size = 0.01});
   const Voxmap& map = body.voxmap;
   std::vector<Eigen::Vector3i> bricks, with_surface;
   plain::for_each_cell(Eigen::Vector3i::Zero(), map.bricks.array() - 1, [&](const auto& b) { bricks.push_back(b); });

@@ -43,20 +43,20 @@ TEST(Message, EveryBeginningIsIncompleteAndNothingElse) {
   Bytes bytes;
   put_message(bytes, {{1, 2}, 3, 4, 5, encode_analog(std::array{1.0, 2.0})});
   for (std::size_t n = 0; n < bytes.size(); ++n)
-    EXPECT_EQ(first_message(View(bytes).first(n)).state, Framed::State::incomplete) << n;
-  EXPECT_EQ(first_message(bytes).state, Framed::State::whole);
+    EXPECT_EQ(first_message(View(bytes).first(n)).state, ParsedMessage::State::incomplete) << n;
+  EXPECT_EQ(first_message(bytes).state, ParsedMessage::State::whole);
 }
 
 TEST(Message, RefusesALengthBelowTheHeaderAndAboveTheLimit) {
   for (const std::uint32_t length : {0U, 1U, 23U, 24U + 64009U, 0x7fffffffU, 0xffffffffU}) {
     Bytes bytes;
     put_uint32(bytes, length);
-    EXPECT_EQ(first_message(bytes).state, Framed::State::malformed) << length;
+    EXPECT_EQ(first_message(bytes).state, ParsedMessage::State::malformed) << length;
   }
   for (const std::uint32_t length : {24U, 24U + 64008U}) {
     Bytes bytes;
     put_uint32(bytes, length);
-    EXPECT_EQ(first_message(bytes).state, Framed::State::incomplete) << length;
+    EXPECT_EQ(first_message(bytes).state, ParsedMessage::State::incomplete) << length;
   }
 }
 
@@ -83,11 +83,6 @@ TEST(Payload, DecodersRefuseWhatIsNotExactlyRight) {
   put_uint32(long_name, 97);
   put_text(long_name, std::string(96, 'x'));
   EXPECT_FALSE(decode_name(long_name));
-
-  const Bytes pose = encode(SensorPose{});
-  EXPECT_TRUE(decode_sensor_pose(pose));
-  EXPECT_FALSE(decode_sensor_pose(View(pose).first(63)));
-  EXPECT_FALSE(decode_sensor_pose(encode(SensorPose{-1, {}})));
 
   const Bytes analog = encode_analog(std::array{1.0, 2.0});
   EXPECT_FALSE(decode_analog(View(analog).first(16)));
@@ -145,23 +140,19 @@ TEST(Fuzz, NoBytesBreakTheDecoders) {
   std::uint64_t understood = 0;
   for (std::uint64_t k = 0; k < count; ++k) {
     const Bytes bytes = any_bytes(random, k);
-    const Framed framed = first_message(bytes);
+    const ParsedMessage parsed = first_message(bytes);
     (void)decode_request(bytes);
-    if (framed.state != Framed::State::whole) continue;
+    if (parsed.state != ParsedMessage::State::whole) continue;
     ++whole;
-    ASSERT_LE(framed.bytes, bytes.size());
-    const View payload = framed.message.payload;
-    ASSERT_LE(kHeaderBytes + payload.size(), framed.bytes);
+    ASSERT_LE(parsed.bytes, bytes.size());
+    const View payload = parsed.message.payload;
+    ASSERT_LE(kHeaderBytes + payload.size(), parsed.bytes);
     const auto name = decode_name(payload);
-    const auto pose = decode_sensor_pose(payload);
     const auto analog = decode_analog(payload);
     const auto text = decode_text(payload);
-    understood += name || pose || analog ? 1 : 0;
+    understood += name || analog ? 1 : 0;
     if (name) {
       ASSERT_LE(name->size(), kNameMax);
-    }
-    if (pose) {
-      ASSERT_GE(pose->sensor, 0);
     }
     if (analog) {
       ASSERT_LE(analog->count, kChannelsMax);

@@ -21,13 +21,17 @@ std::vector<std::string> honest_trackers() {
   names.emplace_back("scaat/3");
   return names;
 }
+const TrackerEntry& entry_of(const std::string& name) {
+  return find_tracker(name.substr(0, name.find('/')));
+}
 bool has_three_leds(const std::string& name) {
-  return name == "three-led" || name.ends_with("/3");
+  return name.ends_with("/3") || entry_of(name).leds.count == 3;
 }
 std::unique_ptr<Tracker> make(const std::string& name) {
   TrackerSettings settings;
   if (has_three_leds(name)) settings.leds = LedLayout::triangle();
-  return make_tracker(name.substr(0, name.find('/')), settings);
+  if (entry_of(name).remotes == 2) settings.X_R1R2 = Pose();
+  return make_tracker(entry_of(name).name, settings);
 }
 
 class BadInput : public testing::TestWithParam<std::string> {
@@ -176,7 +180,7 @@ TEST_P(BadInput, RandomReportsNeverMakeAWrongReport) {
   double t = 0;
   for (std::uint64_t k = 0; k < count; ++k) {
     t += 0.01 * random.uniform(1000 * k + 500) + (random.uniform(1000 * k + 501) < 0.001 ? 1.0 : 0.0);
-    if (GetParam() == "stereo") (void)tracker_->update(t, any_channels(other, k, good()), 1);
+    if (entry_of(GetParam()).remotes == 2) (void)tracker_->update(t, any_channels(other, k, good()), 1);
     const Report& report = tracker_->update(t, any_channels(random, k, good()));
     if (!report.valid) continue;
     ++valid;

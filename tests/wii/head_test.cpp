@@ -24,7 +24,7 @@ TEST(Head, SaysWhereTheHeadIsInTheWorld) {
   Head head = recorded({0, 0.01});
   EXPECT_TRUE(std::isnan(head.estimate().pose.position.x()));
   EXPECT_FALSE(head.estimate().valid);
-  head.follow(0.001);
+  head.advance(0.001);
   EXPECT_TRUE(head.estimate().valid);
   EXPECT_NEAR(head.world_pose().position.z(), 5 + 1299.83 * 0.15 / 194, 1e-4);
   EXPECT_TRUE(std::isnan(head.sensed().X_LH.position.x())) << "this recording does not know the truth";
@@ -36,28 +36,28 @@ TEST(Head, TakesReportKInTheFrameThatEndsAtItsTime) {
   for (int k = 0; k < 10'000; ++k) times.push_back(k / 100.0);
   Head head = recorded(times);
   for (int frame = 1; frame < 100'000; ++frame) {
-    head.follow(frame * 0.001);
+    head.advance(frame * 0.001);
     ASSERT_EQ(head.taken(), frame == 1 || frame % 10 == 0 ? 1U : 0U) << frame;
   }
 }
 
 TEST(Head, TakesAllThatIsDueAndCountsIt) {
   Head head = recorded({3, 3.0001, 3.0002, 3.5});  // counted from the first
-  head.follow(0.001);
+  head.advance(0.001);
   EXPECT_EQ(head.taken(), 3U);
   EXPECT_NEAR(head.sensed().t, 0.0002, 1e-12);
-  head.follow(0.002);
+  head.advance(0.002);
   EXPECT_EQ(head.taken(), 0U);
   EXPECT_NEAR(head.duration(), 0.5, 1e-12);
 }
 
 TEST(Head, StopsStandingByWhatHasGrownOld) {
   Head head = recorded({0});
-  head.follow(0.001);
-  head.follow(0.4);
+  head.advance(0.001);
+  head.advance(0.4);
   EXPECT_TRUE(head.estimate().valid);
   EXPECT_FALSE(head.estimate().news);
-  head.follow(0.6);
+  head.advance(0.6);
   EXPECT_FALSE(head.estimate().valid);
 }
 
@@ -65,7 +65,7 @@ TEST(Head, OfAVirtualRemoteKnowsTheTruthAndGoesOn) {
   Head head("head", make_virtual_source({.sensor = "ideal"}), "scaat", {});
   double worst = 0;
   for (int frame = 1; frame <= 20'000; ++frame) {
-    head.follow(frame * 0.001);
+    head.advance(frame * 0.001);
     worst = std::max(worst, (head.estimate().pose.position - head.sensed().X_LH.position).norm());
   }
   EXPECT_TRUE(head.estimate().valid);

@@ -17,7 +17,7 @@ RemoteSettings ideal(const LedLayout& leds) {
   return settings;
 }
 
-// Without noise only the belief that heads are upright pulls, by (0.2 deg / 18 deg)^2 of the yaw at most.
+// Without noise only the prior that heads are upright pulls, by (0.2 deg / 18 deg)^2 of the yaw at most.
 TEST(ThreeLed, FindsAnyTurnedHeadAtOnce) {
   TrackerSettings settings;
   settings.leds = LedLayout::triangle();
@@ -50,11 +50,12 @@ TEST(Stereo, SeesYawWithTwoLeds) {
 
 TEST(Stereo, GoesOnWithEitherRemoteAlone) {
   TrackerSettings settings;
-  settings.X_R1R2 = {{0.5, 0, 0}, rotation_from_vector({0, -0.4, 0})};
+  const Pose X_R1R2 = {{0.5, 0, 0}, rotation_from_vector({0, -0.4, 0})};
+  settings.X_R1R2 = X_R1R2;
   Situation first;
   first.X_WH = {{0, 0, 1.2}, Quaterniond::Identity()};
   Situation second = first;
-  second.X_WR = settings.X_R1R2;
+  second.X_WR = X_R1R2;
   const Channels c1 = VirtualRemote({}, 1, "a").sense(0, first).channels;
   const Channels c2 = VirtualRemote({}, 1, "b").sense(0, second).channels;
   const std::unique_ptr<Tracker> tracker = make_tracker("stereo", settings);

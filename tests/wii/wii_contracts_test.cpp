@@ -95,7 +95,7 @@ TEST(PoseSolverDeathTest, FitsSightingsOfTwoRemotes) {
   EXPECT_BROKEN(PoseSolver{settings}, "is_positive(settings.pixel_sigma)");
   settings = {};
   settings.X_R1R2 = kStretched;
-  EXPECT_BROKEN(PoseSolver{settings}, "is_placement(settings.X_R1R2)");
+  EXPECT_BROKEN(PoseSolver{settings}, "!settings.X_R1R2 || is_placement(*settings.X_R1R2)");
   const PoseSolver solver{TrackerSettings()};
   Eigen::Vector2d pixel;
   EXPECT_BROKEN(solver.project(Pose(), {0, 0, 1}, 2, pixel), "remote == 0 || remote == 1");
@@ -157,7 +157,7 @@ TEST(HeadDeathTest, HasASourceAndAPlace) {
   EXPECT_BROKEN(Head("head", nullptr, "scaat", Pose()), "source != nullptr");
   EXPECT_BROKEN(Head("head", source(), "scaat", kStretched), "is_placement(X_WL)");
   Head head("head", source(), "scaat", Pose());
-  EXPECT_BROKEN(head.follow(kNaN), "std::isfinite(t)");
+  EXPECT_BROKEN(head.advance(kNaN), "std::isfinite(t)");
 }
 
 TEST(RecordingDeathTest, HasChannelsForEveryTime) {

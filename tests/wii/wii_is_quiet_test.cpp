@@ -27,14 +27,15 @@ namespace {
 
 TEST(Trackers, AllocateNothingPerUpdate) {
   const Trajectory& path = trajectory("dropout-both");
-  for (const std::string& name : tracker_names()) {
+  for (const TrackerEntry& entry : trackers()) {
     TrackerSettings settings;
-    if (name == "three-led") settings.leds = LedLayout::triangle();
+    settings.leds = entry.leds;
+    if (entry.remotes == 2) settings.X_R1R2 = Pose();
     RemoteSettings remote_settings;
-    if (name == "three-led") remote_settings.leds.push_back(Led{settings.leds.p_H[2]});
+    if (entry.leds.count > 2) remote_settings.leds.push_back(Led{settings.leds.p_H[2]});
     remote_settings.outages = path.outages;
     VirtualRemote remote(remote_settings, 1, "r");
-    const std::unique_ptr<Tracker> tracker = make_tracker(name, settings);
+    const std::unique_ptr<Tracker> tracker = make_tracker(entry.name, settings);
     int valid = 0;
     for (std::uint64_t k = 0; k < 400; ++k) {
       const SensedReport sensed = remote.sense(k, path.at(remote.report_time(k)));
@@ -42,9 +43,9 @@ TEST(Trackers, AllocateNothingPerUpdate) {
       (void)tracker->update(sensed.t, sensed.channels, 1);
       valid += tracker->update(sensed.t, sensed.channels, 0).valid ? 1 : 0;
       (void)tracker->heartbeat(sensed.t + 0.005);
-      ASSERT_EQ(allocations, before) << name << ", report " << k;
+      ASSERT_EQ(allocations, before) << entry.name << ", report " << k;
     }
-    EXPECT_GT(valid, 200) << name << " hardly worked: this test would prove little";
+    EXPECT_GT(valid, 200) << entry.name << " hardly worked: this test would prove little";
   }
 }
 

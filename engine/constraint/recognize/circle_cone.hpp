@@ -22,9 +22,9 @@ struct CircleCone {
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::pin_in_hole(a, b, kKind, Pairing::axis_axis, NormalField::about_cone);
-    c.guide = Side::b;
+    c.normal_source = Side::b;
     c.clearance = 0;
-    c.pushes_only = true;
+    c.unilateral = true;
     return c;
   }
 };

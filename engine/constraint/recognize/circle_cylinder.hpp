@@ -21,7 +21,7 @@ struct CircleCylinder {
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::pin_in_hole(a, b, kKind, Pairing::axis_axis, NormalField::about_line);
-    c.guide = Side::b;
+    c.normal_source = Side::b;
     return c;
   }
 };

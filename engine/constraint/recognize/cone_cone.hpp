@@ -27,7 +27,7 @@ struct ConeCone {
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::pin_in_hole(a, b, kKind, Pairing::axis_axis, NormalField::about_cone);
     c.clearance = 0;  // grows as the cones part: alignment knows
-    c.pushes_only = true;
+    c.unilateral = true;
     return c;
   }
 };

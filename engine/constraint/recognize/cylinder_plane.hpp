@@ -18,10 +18,7 @@ struct CylinderPlane {
   }
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
-    Constraint c = recognizing::between(a, b, kKind, Pairing::axis_plane, NormalField::constant);
-    c.guide = Side::b;
-    c.pushes_only = true;
-    return c;
+    return recognizing::on_plane(a, b, kKind, Pairing::axis_plane);
   }
 };
 

@@ -1,4 +1,4 @@
-// What recognizers share: does a pin fit a hole, and how a side of a constraint is written down.
+// Common to recognizers: whether a pin fits a hole, and how the sides of a constraint are filled in.
 #pragma once
 
 #include "engine/constraint/constraint.hpp"
@@ -7,7 +7,7 @@
 
 namespace verisim::recognizing {
 
-/// Which of two round things is the hole: the one that says so, else the one whose partner is a pin, else the larger.
+/// Which of two curved shapes is the hole: the one of that role, else the partner of a pin, else the larger one.
 /// `neither` if both are pins or both are holes.
 [[nodiscard]] inline Side hole_of(Role a, double radius_a, Role b, double radius_b) {
   if (a == b) {
@@ -76,23 +76,33 @@ template <typename A, typename B>
   c.kind = kind;
   c.pairing = pairing;
   c.field = field;
-  c.guide = Side::neither;
+  c.normal_source = Side::neither;
   c.pin = Side::neither;
-  c.pushes_only = false;
+  c.unilateral = false;
   c.clearance = 0;
   c.a = side_of(a);
   c.b = side_of(b);
   return c;
 }
 
-/// The same with a pin and a hole: who is who, and by how much the hole is larger.
+/// The same with a plane as b: unilateral, with the plane's normal.
+template <typename A>
+[[nodiscard]] inline Constraint on_plane(const Bounded<A>& a, const Bounded<Plane>& b, ConstraintKind kind,
+                                         Pairing pairing) {
+  Constraint c = between(a, b, kind, pairing, NormalField::constant);
+  c.normal_source = Side::b;
+  c.unilateral = true;
+  return c;
+}
+
+/// Two sides with a pin and a hole: sets which is which, and the clearance.
 template <typename A, typename B>
 [[nodiscard]] inline Constraint pin_in_hole(const Bounded<A>& a, const Bounded<B>& b, ConstraintKind kind,
                                             Pairing pairing, NormalField field) {
   Constraint c = between(a, b, kind, pairing, field);
   const Side hole = hole_of(a.role, c.a.radius, b.role, c.b.radius);
   c.pin = opposite(hole);
-  c.guide = hole;
+  c.normal_source = hole;
   c.clearance = hole == Side::a ? c.a.radius - c.b.radius : c.b.radius - c.a.radius;
   return c;
 }

@@ -21,7 +21,7 @@ struct PlanePlane {
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::between(a, b, kKind, Pairing::plane_plane, NormalField::constant);
-    c.pushes_only = true;
+    c.unilateral = true;
     return c;
   }
 };

@@ -25,7 +25,7 @@ struct SphereCone {
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::between(a, b, kKind, Pairing::point_axis, NormalField::about_point);
     c.pin = Side::a;
-    c.guide = Side::a;
+    c.normal_source = Side::a;
     return c;
   }
 };

@@ -20,7 +20,7 @@ struct SphereCylinder {
 
   static Constraint make(const Bounded<First>& a, const Bounded<Second>& b) {
     Constraint c = recognizing::pin_in_hole(a, b, kKind, Pairing::point_axis, NormalField::about_line);
-    c.guide = Side::a;
+    c.normal_source = Side::a;
     return c;
   }
 };

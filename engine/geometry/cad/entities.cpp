@@ -42,7 +42,7 @@ Range mirrored(const Range& r) {
   return {-r[1], -r[0]};
 }
 
-/// What a face's surface and bounds are made from.
+/// The kernel's data of a face's surface and bounds.
 struct Source {
   gp_Ax3 axes;
   bool reversed;  ///< the material's outward normal is against the surface's own (du x dv)
@@ -156,7 +156,12 @@ Face face_from(const TopoDS_Face& shape, double unit) {
       s.axes = surface.Torus().Position();
       set_torus(face, s, surface.Torus().MajorRadius(), surface.Torus().MinorRadius());
       break;
-    default:
+    case GeomAbs_BezierSurface:
+    case GeomAbs_BSplineSurface:
+    case GeomAbs_SurfaceOfRevolution:
+    case GeomAbs_SurfaceOfExtrusion:
+    case GeomAbs_OffsetSurface:
+    case GeomAbs_OtherSurface:
       face.surface = OtherSurface{};
   }
   return face;
@@ -166,7 +171,7 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
   Edge edge;
   edge.length = round_number(unit * length_of(shape));
   const BRepAdaptor_Curve curve(shape);
-  const auto frame = [&](const gp_Ax2& axes, auto& c) {
+  const auto set_axes = [&](const gp_Ax2& axes, auto& c) {
     c.center = round_point(unit * vector(axes.Location().XYZ()));
     c.normal = round_direction(vector(axes.Direction()));
     c.x_axis = round_x_axis(vector(axes.XDirection()), c.normal);
@@ -181,7 +186,7 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
       break;
     case GeomAbs_Circle: {
       Circle circle;
-      frame(curve.Circle().Position(), circle);
+      set_axes(curve.Circle().Position(), circle);
       circle.radius = round_number(unit * curve.Circle().Radius());
       edge.curve = circle;
       edge.t_range = angles(from, to);
@@ -189,14 +194,19 @@ Edge edge_from(const TopoDS_Edge& shape, double unit) {
     }
     case GeomAbs_Ellipse: {
       Ellipse ellipse;
-      frame(curve.Ellipse().Position(), ellipse);
+      set_axes(curve.Ellipse().Position(), ellipse);
       ellipse.major_radius = round_number(unit * curve.Ellipse().MajorRadius());
       ellipse.minor_radius = round_number(unit * curve.Ellipse().MinorRadius());
       edge.curve = ellipse;
       edge.t_range = angles(from, to);
       break;
     }
-    default:
+    case GeomAbs_Hyperbola:
+    case GeomAbs_Parabola:
+    case GeomAbs_BezierCurve:
+    case GeomAbs_BSplineCurve:
+    case GeomAbs_OffsetCurve:
+    case GeomAbs_OtherCurve:
       edge.curve = OtherCurve{};
   }
   return edge;

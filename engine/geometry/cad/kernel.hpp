@@ -1,5 +1,5 @@
-// What the CAD program can do, without a type of its libraries in it: main.cpp calls these, and only the files behind
-// them include OpenCASCADE or assimp. All lengths [m]. Not thread-safe, like the kernel.
+// The functions of the CAD program, without types of its libraries. main.cpp calls them; only their source files
+// include OpenCASCADE or assimp. All lengths [m]. Not thread-safe, like the kernel.
 //
 // Errors: Error(input) with `path` in front; the kernel's own exceptions pass (see describe_exception).
 #pragma once

@@ -1,5 +1,5 @@
-// Numbers as the kernel gives them differ in their last bits between CPUs (with and without fused multiply-add). They
-// are rounded here, once, so that no such bit reaches a state hash (loader.hpp states the rule).
+// Rounding of the kernel's numbers, whose last bits differ between CPUs (with and without fused multiply-add). No such
+// bit reaches a state hash (loader.hpp states the rule).
 #pragma once
 
 #include <cmath>

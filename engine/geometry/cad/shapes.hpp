@@ -1,4 +1,5 @@
-// The kernel's shapes on their way to parts. Kernel lengths are millimetres: its tolerances (1e-7) are made for them.
+// Conversion of the kernel's shapes into parts. Kernel lengths are millimetres, for which its tolerances (1e-7) are
+// made.
 #pragma once
 
 #include <TopoDS_Shape.hxx>

@@ -144,7 +144,7 @@ Handle(TDocStd_Document) new_document() {
 }  // namespace
 
 void initialize() {
-  Message::DefaultMessenger()->ChangePrinters().Clear();
+  ::Message::DefaultMessenger()->ChangePrinters().Clear();
   Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
 }
 

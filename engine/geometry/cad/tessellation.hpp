@@ -1,5 +1,5 @@
-// The triangles of a shape, watertight by construction: faces share the vertices of their common edges because each
-// edge's points are numbered once, from the kernel's polygons on triangulations, not found again by coordinates.
+// The triangles of a shape, watertight by construction: two faces have the same vertices along a common edge, because
+// the points of each edge are numbered once, from the kernel's polygons on triangulations.
 #pragma once
 
 #include <TopTools_IndexedMapOfShape.hxx>

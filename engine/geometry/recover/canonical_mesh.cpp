@@ -13,7 +13,7 @@ bool comes_before(const Vector3d& a, const Vector3d& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// Fills vertices; returns the number there of each given vertex.
+/// Fills mesh.vertices. @returns for each given vertex its number there
 std::vector<std::uint32_t> sort_vertices(const std::vector<Vector3d>& given, CanonicalMesh& mesh) {
   std::vector<std::uint32_t> order(given.size());
   std::iota(order.begin(), order.end(), 0U);

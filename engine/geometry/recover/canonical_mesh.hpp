@@ -1,5 +1,5 @@
-// A mesh in an order that depends on its shape alone: vertices by their coordinates, triangles by their vertices. What
-// is computed from it is the same whatever order a file lists triangles in.
+// A triangle mesh in canonical order: vertices sorted by their coordinates, triangles by their vertices. What is
+// computed from it does not depend on the order in which a file lists triangles and vertices. Part coordinates [m].
 #pragma once
 
 #include <array>
@@ -13,14 +13,15 @@ namespace verisim::recover {
 inline constexpr std::uint32_t kNone = kNoFace;
 
 struct CanonicalMesh {
-  std::vector<Vector3d> vertices;                       // ascending (x, y, z), none twice
+  std::vector<Vector3d> vertices;                       // m, ascending (x, y, z), none twice
   std::vector<std::array<std::uint32_t, 3>> triangles;  // smallest vertex first, ascending
-  std::vector<std::array<std::uint32_t, 3>> neighbors;  // across the side from corner i to i + 1; kNone: not one alone
-  std::vector<Vector3d> normals;
-  std::vector<Vector3d> centers;
-  std::vector<double> areas;
-  std::vector<double> heights;          // the smallest of the three
-  std::vector<std::uint32_t> of_given;  // (given triangles): its number here; kNone: without area
+  std::vector<std::array<std::uint32_t, 3>>
+      neighbors;                        // across the side from corner i to i + 1; kNone: none or several
+  std::vector<Vector3d> normals;        // per triangle, unit
+  std::vector<Vector3d> centers;        // per triangle, m
+  std::vector<double> areas;            // per triangle, m^2
+  std::vector<double> heights;          // per triangle, m: the smallest of the three
+  std::vector<std::uint32_t> of_given;  // (given triangles) number here; kNone: without area
   double size = 0;                      // m, diagonal of the bounding box
 
   [[nodiscard]] const Vector3d& corner(std::uint32_t triangle, std::size_t i) const {
@@ -28,6 +29,7 @@ struct CanonicalMesh {
   }
 };
 
+/// Removes triangles without area and those that occur twice. O(n log n).
 [[nodiscard]] CanonicalMesh canonical(const TriangleMesh& mesh);
 
 }  // namespace verisim::recover

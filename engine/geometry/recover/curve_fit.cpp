@@ -11,15 +11,16 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
-constexpr double kParallel = 1 - 1e-8;   // cosine
-constexpr std::size_t kSaysACircle = 4;  // points: three lie on a circle always
-constexpr double kSlack = 3;             // tolerances: a curve of two surfaces is off where both are
+using pinned::kFullTurn;
+constexpr double kParallel = 1 - 1e-8;       // cosine
+constexpr std::size_t kCirclePointsMin = 4;  // any three points lie on a circle
+constexpr double kSlack = 3;                 // tolerances: the intersection of two surfaces is off where both are
 
-/// x = center + first cos t + second sin t; a circle where both are equally long.
-struct Oval {
+/// A circle or ellipse, p(t) = center + semi_x cos t x_axis + semi_y sin t (normal x x_axis). A circle if both
+/// semi-axes are equal [m].
+struct Conic {
   Vector3d center, normal, x_axis;
-  double first, second;
+  double semi_x, semi_y;
 };
 
 double length_of(const std::vector<Vector3d>& points) {
@@ -38,10 +39,11 @@ bool is_straight(const std::vector<Vector3d>& points, double tolerance) {
   });
 }
 
-// --- what two surfaces say ------------------------------------------------------------------------------------------
+// --- where two surfaces meet
+// ------------------------------------------------------------------------------------------
 
-/// A circle about the axis of a round surface.
-std::optional<Oval> about_axis(const SurfaceValue& round, const std::vector<Vector3d>& points) {
+/// The circle about the axis of a surface of revolution that is nearest to the points.
+std::optional<Conic> circle_about_axis(const SurfaceValue& round, const std::vector<Vector3d>& points) {
   double rho = 0, height = 0;
   for (const Vector3d& p : points) {
     const Profile f = profile_of(p, round.point, round.axis);
@@ -49,25 +51,26 @@ std::optional<Oval> about_axis(const SurfaceValue& round, const std::vector<Vect
     height += f.height / static_cast<double>(points.size());
   }
   if (!(rho > 0)) return std::nullopt;
-  return Oval{round.point + height * round.axis, round.axis, round.axis.unitOrthogonal(), rho, rho};
+  return Conic{round.point + height * round.axis, round.axis, round.axis.unitOrthogonal(), rho, rho};
 }
 
-bool share_axis(const SurfaceValue& a, const SurfaceValue& b, double tolerance) {
+bool are_coaxial(const SurfaceValue& a, const SurfaceValue& b, double tolerance) {
   if (std::abs(a.axis.dot(b.axis)) < kParallel) return false;
   return b.kind == Kind::plane || profile_of(b.point, a.point, a.axis).rho <= kSlack * tolerance;
 }
 
-std::optional<Oval> cut(const SurfaceValue& plane, const SurfaceValue& cylinder) {
+std::optional<Conic> plane_cylinder_section(const SurfaceValue& plane, const SurfaceValue& cylinder) {
   const double cosine = plane.axis.dot(cylinder.axis);
   if (std::abs(cosine) < 1e-3) return std::nullopt;
   const double along = (plane.point - cylinder.point).dot(plane.axis) / cosine;
   const Vector3d slope = cylinder.axis - cosine * plane.axis;
   if (!(slope.norm() > 0)) return std::nullopt;
-  return Oval{cylinder.point + along * cylinder.axis, plane.axis, slope.normalized(), cylinder.a / std::abs(cosine),
-              cylinder.a};
+  return Conic{cylinder.point + along * cylinder.axis, plane.axis, slope.normalized(), cylinder.a / std::abs(cosine),
+               cylinder.a};
 }
 
-std::optional<Oval> expected(std::vector<SurfaceValue> beside, const std::vector<Vector3d>& points, double tolerance) {
+std::optional<Conic> expected_conic(std::vector<SurfaceValue> beside, const std::vector<Vector3d>& points,
+                                    double tolerance) {
   if (beside.size() != 2) return std::nullopt;
   if (beside[0].kind == Kind::plane) std::swap(beside[0], beside[1]);
   const SurfaceValue &round = beside[0], &other = beside[1];
@@ -75,14 +78,14 @@ std::optional<Oval> expected(std::vector<SurfaceValue> beside, const std::vector
   if (round.kind == Kind::sphere && other.kind == Kind::plane) {
     SurfaceValue turned = round;
     turned.axis = other.axis;
-    return about_axis(turned, points);
+    return circle_about_axis(turned, points);
   }
-  if (round.kind != Kind::sphere && share_axis(round, other, tolerance)) return about_axis(round, points);
-  if (round.kind == Kind::cylinder && other.kind == Kind::plane) return cut(other, round);
+  if (round.kind != Kind::sphere && are_coaxial(round, other, tolerance)) return circle_about_axis(round, points);
+  if (round.kind == Kind::cylinder && other.kind == Kind::plane) return plane_cylinder_section(other, round);
   return std::nullopt;
 }
 
-std::optional<Oval> circle_through_points(const std::vector<Vector3d>& points) {
+std::optional<Conic> circle_through_points(const std::vector<Vector3d>& points) {
   const SurfaceValue plane = plane_through(points);
   const Vector3d x = plane.axis.unitOrthogonal(), y = plane.axis.cross(x);
   double size = 0;
@@ -92,30 +95,30 @@ std::optional<Oval> circle_through_points(const std::vector<Vector3d>& points) {
   const auto circle = circle_through(flat);
   if (!circle) return std::nullopt;
   const double radius = size * circle->z();
-  return Oval{plane.point + size * (circle->x() * x + circle->y() * y), plane.axis, x, radius, radius};
+  return Conic{plane.point + size * (circle->x() * x + circle->y() * y), plane.axis, x, radius, radius};
 }
 
 // --- from points to parameters --------------------------------------------------------------------------------------
 
-double angle_on(const Oval& oval, const Vector3d& p) {
-  const Vector3d arm = p - oval.center, y = oval.normal.cross(oval.x_axis);
-  return pinned::atan2(arm.dot(y) / oval.second, arm.dot(oval.x_axis) / oval.first);
+double angle_on(const Conic& conic, const Vector3d& p) {
+  const Vector3d arm = p - conic.center, y = conic.normal.cross(conic.x_axis);
+  return pinned::atan2(arm.dot(y) / conic.semi_y, arm.dot(conic.x_axis) / conic.semi_x);
 }
 
-bool passes_through(const Oval& oval, const std::vector<Vector3d>& points, double tolerance) {
+bool passes_through(const Conic& conic, const std::vector<Vector3d>& points, double tolerance) {
   return std::ranges::all_of(points, [&](const Vector3d& p) {
-    const double t = angle_on(oval, p);
-    const Vector3d y = oval.normal.cross(oval.x_axis);
-    const Vector3d on = oval.center + oval.first * pinned::cos(t) * oval.x_axis + oval.second * pinned::sin(t) * y;
+    const double t = angle_on(conic, p);
+    const Vector3d y = conic.normal.cross(conic.x_axis);
+    const Vector3d on = conic.center + conic.semi_x * pinned::cos(t) * conic.x_axis + conic.semi_y * pinned::sin(t) * y;
     return (p - on).norm() <= tolerance;
   });
 }
 
-/// How far around the polyline goes, seen against the normal.
-double sweep_of(const Oval& oval, const std::vector<Vector3d>& points) {
+/// Angle by which the polyline turns about the normal [rad].
+double sweep_of(const Conic& conic, const std::vector<Vector3d>& points) {
   double sweep = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
-    double step = angle_on(oval, points[i]) - angle_on(oval, points[i - 1]);
+    double step = angle_on(conic, points[i]) - angle_on(conic, points[i - 1]);
     if (step > pinned::kPi) step -= kFullTurn;
     if (step < -pinned::kPi) step += kFullTurn;
     sweep += step;
@@ -123,21 +126,21 @@ double sweep_of(const Oval& oval, const std::vector<Vector3d>& points) {
   return sweep;
 }
 
-void set_oval(Edge& edge, Oval oval) {
+void set_conic(Edge& edge, Conic conic) {
   const bool closed = edge.polyline.front() == edge.polyline.back();
-  if (sweep_of(oval, edge.polyline) < 0) oval.normal = -oval.normal;
-  const bool is_circle = oval.first == oval.second;
-  if (is_circle) {  // it begins at its first point
-    const Vector3d arm = edge.polyline.front() - oval.center;
-    oval.x_axis = (arm - arm.dot(oval.normal) * oval.normal).normalized();
+  if (sweep_of(conic, edge.polyline) < 0) conic.normal = -conic.normal;
+  const bool is_circle = conic.semi_x == conic.semi_y;
+  if (is_circle) {  // t = 0 at its first point
+    const Vector3d arm = edge.polyline.front() - conic.center;
+    conic.x_axis = (arm - arm.dot(conic.normal) * conic.normal).normalized();
   }
-  const double from = is_circle ? 0 : angle_on(oval, edge.polyline.front());
-  edge.t_range = {from, from + (closed ? kFullTurn : sweep_of(oval, edge.polyline))};
+  const double from = is_circle ? 0 : angle_on(conic, edge.polyline.front());
+  edge.t_range = {from, from + (closed ? kFullTurn : sweep_of(conic, edge.polyline))};
   if (is_circle) {
-    edge.curve = Circle{oval.center, oval.normal, oval.x_axis, oval.first};
-    edge.length = oval.first * (edge.t_range[1] - edge.t_range[0]);
+    edge.curve = Circle{conic.center, conic.normal, conic.x_axis, conic.semi_x};
+    edge.length = conic.semi_x * (edge.t_range[1] - edge.t_range[0]);
   } else {
-    edge.curve = Ellipse{oval.center, oval.normal, oval.x_axis, oval.first, oval.second};
+    edge.curve = Ellipse{conic.center, conic.normal, conic.x_axis, conic.semi_x, conic.semi_y};
     edge.length = length_of(edge.polyline);
   }
 }
@@ -150,8 +153,8 @@ void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tol
   for (const Surface* surface : beside) {
     if (const auto value = SurfaceValue::of(*surface)) values.push_back(*value);
   }
-  const std::optional<Oval> oval = expected(values, points, tolerance);
-  if (oval && passes_through(*oval, points, kSlack * tolerance)) return set_oval(edge, *oval);
+  const std::optional<Conic> conic = expected_conic(values, points, tolerance);
+  if (conic && passes_through(*conic, points, kSlack * tolerance)) return set_conic(edge, *conic);
   if (is_straight(points, tolerance)) {
     const Vector3d way = points.back() - points.front();
     edge.curve = Line{points.front(), way.normalized()};
@@ -159,9 +162,9 @@ void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tol
     edge.t_range = {0, edge.length};
     return;
   }
-  if (points.size() >= kSaysACircle) {
-    const std::optional<Oval> circle = circle_through_points(points);
-    if (circle && passes_through(*circle, points, kSlack * tolerance)) return set_oval(edge, *circle);
+  if (points.size() >= kCirclePointsMin) {
+    const std::optional<Conic> circle = circle_through_points(points);
+    if (circle && passes_through(*circle, points, kSlack * tolerance)) return set_conic(edge, *circle);
   }
   edge.curve = OtherCurve{};
   edge.length = length_of(points);

@@ -1,4 +1,4 @@
-// The curve that a polyline stands for.
+// The curve that a polyline between two faces stands for.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,11 @@
 
 namespace verisim::recover {
 
-/// Sets curve, t_range and length of an edge from its polyline (closed if its last point is its first): a line, a
-/// circle, where a plane cuts a cylinder an ellipse, or another curve. A round surface beside it says that two or three
-/// points are those of an arc. @param tolerance  m, of points from the curve
+/// Sets curve, t_range and length of an edge from its polyline; the edge is closed if its last point is its first. In
+/// this order: the circle or ellipse in which the two surfaces meet, a line, a circle through the points, another
+/// curve. Two or three points are an arc only if the surfaces say so.
+/// @param beside     the surfaces on both sides, or one
+/// @param tolerance  m, of points from the curve
 void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tolerance);
 
 }  // namespace verisim::recover

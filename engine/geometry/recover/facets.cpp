@@ -22,41 +22,41 @@ void measure(const CanonicalMesh& mesh, Facet& facet) {
   facet.center = center / static_cast<double>(facet.vertices.size());
 }
 
-/// One piece of a facet's border.
-struct Piece {
+/// One segment of a facet's border.
+struct BorderSegment {
   std::uint32_t facet;
   Vector3d from, to;
 };
 
-std::vector<Piece> border_of(const CanonicalMesh& mesh, const Facets& facets, std::uint32_t number) {
-  std::vector<Piece> pieces;
+std::vector<BorderSegment> border_of(const CanonicalMesh& mesh, const Facets& facets, std::uint32_t number) {
+  std::vector<BorderSegment> segments;
   for (const std::uint32_t t : facets.all[number].triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t beside = mesh.neighbors[t][i];
       const std::uint32_t facet = beside == kNone ? kNone : facets.of_triangle[beside];
-      if (facet != number) pieces.push_back({facet, mesh.corner(t, i), mesh.corner(t, (i + 1) % 3)});
+      if (facet != number) segments.push_back({facet, mesh.corner(t, i), mesh.corner(t, (i + 1) % 3)});
     }
   }
-  std::ranges::stable_sort(pieces, {}, &Piece::facet);
-  return pieces;
+  std::ranges::stable_sort(segments, {}, &BorderSegment::facet);
+  return segments;
 }
 
-std::vector<FacetSide> sides_of(const std::vector<Piece>& pieces, const Facets& facets, std::uint32_t number,
+std::vector<FacetSide> sides_of(const std::vector<BorderSegment>& segments, const Facets& facets, std::uint32_t number,
                                 double cos_smooth) {
   std::vector<FacetSide> sides;
   double longest = 0;
-  for (const Piece& piece : pieces) {
-    const Vector3d way = piece.to - piece.from;
+  for (const BorderSegment& segment : segments) {
+    const Vector3d way = segment.to - segment.from;
     const double length = way.norm();
-    if (sides.empty() || sides.back().facet != piece.facet) {
+    if (sides.empty() || sides.back().facet != segment.facet) {
       const bool smooth =
-          piece.facet != kNone && facets.all[number].normal.dot(facets.all[piece.facet].normal) > cos_smooth;
-      sides.push_back({piece.facet, 0, Vector3d::Zero(), Vector3d::Zero(), smooth});
+          segment.facet != kNone && facets.all[number].normal.dot(facets.all[segment.facet].normal) > cos_smooth;
+      sides.push_back({segment.facet, 0, Vector3d::Zero(), Vector3d::Zero(), smooth});
       longest = 0;
     }
     FacetSide& side = sides.back();
     side.length += length;
-    side.middle += 0.5 * length * (piece.from + piece.to);
+    side.middle += 0.5 * length * (segment.from + segment.to);
     if (length > longest) {
       longest = length;
       side.direction = way / length;

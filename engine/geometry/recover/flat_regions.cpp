@@ -11,7 +11,7 @@ namespace verisim::recover {
 
 namespace {
 
-/// What CGAL calls a neighbor query: the triangles beside one.
+/// CGAL's neighbor query: the triangles adjacent to one.
 class Beside {
  public:
   explicit Beside(const CanonicalMesh& mesh) : mesh_(mesh) {}
@@ -25,7 +25,7 @@ class Beside {
   const CanonicalMesh& mesh_;
 };
 
-/// What CGAL calls a region type: the plane by least squares through the corners so far.
+/// CGAL's region type: the plane by least squares through the corners of the region so far.
 class InPlane {
  public:
   InPlane(const CanonicalMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {}
@@ -72,7 +72,7 @@ class InPlane {
   std::size_t counted_ = 0;
 };
 
-/// What CGAL calls a seed map: the n-th triangle to begin with.
+/// CGAL's seed map: the order in which triangles are tried as seeds.
 struct Seeds {
   using key_type = std::size_t;
   using value_type = std::size_t;

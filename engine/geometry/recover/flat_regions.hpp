@@ -1,4 +1,4 @@
-// Facets: triangles side by side in one plane. Grown with CGAL's region growing; flat_regions.cpp alone includes it.
+// Facets by CGAL's region growing: adjacent triangles in one plane. Only flat_regions.cpp includes CGAL.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace verisim::recover {
 
-/// Triangles that differ by more than this are not of one facet, unless one of them is a sliver.
-inline constexpr double kSameNormal = 0.9998476951563913;  // cosine of 1 degree
-/// A triangle is a sliver, with a normal that says nothing, if it is lower than this many tolerances.
+/// Cosine of 1 degree: normals of one facet differ by no more. Slivers are excepted.
+inline constexpr double kSameNormal = 0.9998476951563913;
+/// Tolerances. A triangle of less height is a sliver: its normal is unreliable.
 inline constexpr double kSliver = 20;
 
-/// Every triangle is in one facet. Facets in the order of their largest triangles, the largest first.
+/// Facets in the order of their largest triangles, the largest first. Every triangle is in one.
 /// @param tolerance  m, of vertices from the facet's plane
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> flat_regions(const CanonicalMesh& mesh, double tolerance);
 

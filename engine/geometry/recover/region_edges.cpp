@@ -11,18 +11,18 @@ namespace verisim::recover {
 
 namespace {
 
-/// A side of the mesh between two regions; the second is kNone where the mesh is open.
-struct Piece {
+/// A side of the mesh between two regions; the second region is kNone where the mesh is open.
+struct BoundarySegment {
   std::array<std::uint32_t, 2> vertices;
   std::array<std::uint32_t, 2> regions;
 };
 
-std::vector<Piece> pieces_of(const CanonicalMesh& mesh, const std::vector<Region>& regions) {
+std::vector<BoundarySegment> boundary_of(const CanonicalMesh& mesh, const std::vector<Region>& regions) {
   std::vector<std::uint32_t> region_of(mesh.triangles.size(), kNone);
   for (std::uint32_t r = 0; r < regions.size(); ++r) {
     for (const std::uint32_t t : regions[r].triangles) region_of[t] = r;
   }
-  std::vector<Piece> pieces;
+  std::vector<BoundarySegment> segments;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t beside = mesh.neighbors[t][i];
@@ -30,30 +30,31 @@ std::vector<Piece> pieces_of(const CanonicalMesh& mesh, const std::vector<Region
       if (other == region_of[t] || (beside != kNone && beside < t)) continue;
       const auto [from, to] = std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]);
       const auto [low, high] = std::minmax(region_of[t], other);
-      pieces.push_back({{from, to}, {low, high}});
+      segments.push_back({{from, to}, {low, high}});
     }
   }
-  std::ranges::sort(pieces, {}, &Piece::vertices);
-  return pieces;
+  std::ranges::sort(segments, {}, &BoundarySegment::vertices);
+  return segments;
 }
 
-/// Pieces at each vertex.
-class Chains {
+/// Joins boundary segments into chains.
+class BoundaryChains {
  public:
-  explicit Chains(const std::vector<Piece>& pieces) : pieces_(pieces), used_(pieces.size(), false) {
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      for (const std::uint32_t v : pieces[i].vertices) at_[v].push_back(i);
+  explicit BoundaryChains(const std::vector<BoundarySegment>& segments)
+      : segments_(segments), used_(segments.size(), false) {
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      for (const std::uint32_t v : segments[i].vertices) at_[v].push_back(i);
     }
   }
 
-  /// Calls visit(vertices, regions) for each chain: those with ends first, then rings, whose last vertex is the first.
+  /// Calls visit(vertices, regions) for each chain: those with ends first, then loops, whose last vertex is the first.
   template <typename Visit>
   void for_each(Visit visit) {
-    for (const bool rings : {false, true}) {
-      for (const auto& [vertex, pieces] : at_) {
-        if (!rings && !is_end(vertex)) continue;
-        for (const std::size_t piece : pieces) {
-          if (!used_[piece]) visit(follow(vertex, piece), pieces_[piece].regions);
+    for (const bool loops : {false, true}) {
+      for (const auto& [vertex, segments] : at_) {
+        if (!loops && !is_end(vertex)) continue;
+        for (const std::size_t segment : segments) {
+          if (!used_[segment]) visit(follow(vertex, segment), segments_[segment].regions);
         }
       }
     }
@@ -61,25 +62,25 @@ class Chains {
 
  private:
   [[nodiscard]] bool is_end(std::uint32_t vertex) const {
-    const std::vector<std::size_t>& pieces = at_.at(vertex);
-    return pieces.size() != 2 || pieces_[pieces[0]].regions != pieces_[pieces[1]].regions;
+    const std::vector<std::size_t>& segments = at_.at(vertex);
+    return segments.size() != 2 || segments_[segments[0]].regions != segments_[segments[1]].regions;
   }
 
-  std::vector<std::uint32_t> follow(std::uint32_t from, std::size_t piece) {
+  std::vector<std::uint32_t> follow(std::uint32_t from, std::size_t segment) {
     std::vector<std::uint32_t> chain = {from};
-    while (!used_[piece]) {
-      used_[piece] = true;
-      const auto& [a, b] = pieces_[piece].vertices;
+    while (!used_[segment]) {
+      used_[segment] = true;
+      const auto& [a, b] = segments_[segment].vertices;
       const std::uint32_t next = chain.back() == a ? b : a;
       chain.push_back(next);
       if (is_end(next)) break;
       const std::vector<std::size_t>& here = at_.at(next);
-      piece = here[0] == piece ? here[1] : here[0];
+      segment = here[0] == segment ? here[1] : here[0];
     }
     return chain;
   }
 
-  const std::vector<Piece>& pieces_;
+  const std::vector<BoundarySegment>& segments_;
   std::vector<bool> used_;
   std::map<std::uint32_t, std::vector<std::size_t>> at_;
 };
@@ -87,20 +88,21 @@ class Chains {
 }  // namespace
 
 std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Region>& regions, double tolerance) {
-  const std::vector<Piece> pieces = pieces_of(mesh, regions);
+  const std::vector<BoundarySegment> segments = boundary_of(mesh, regions);
   std::vector<Edge> edges;
-  Chains(pieces).for_each([&](const std::vector<std::uint32_t>& chain, const std::array<std::uint32_t, 2>& between) {
-    Edge edge;
-    for (const std::uint32_t v : chain) edge.polyline.push_back(mesh.vertices[v]);
-    std::vector<const Surface*> beside;
-    for (const std::uint32_t r : between) {
-      if (r == kNone) continue;
-      edge.faces.push_back(r);
-      beside.push_back(&regions[r].surface);
-    }
-    set_curve(edge, beside, tolerance);
-    edges.push_back(std::move(edge));
-  });
+  BoundaryChains(segments).for_each(
+      [&](const std::vector<std::uint32_t>& chain, const std::array<std::uint32_t, 2>& between) {
+        Edge edge;
+        for (const std::uint32_t v : chain) edge.polyline.push_back(mesh.vertices[v]);
+        std::vector<const Surface*> beside;
+        for (const std::uint32_t r : between) {
+          if (r == kNone) continue;
+          edge.faces.push_back(r);
+          beside.push_back(&regions[r].surface);
+        }
+        set_curve(edge, beside, tolerance);
+        edges.push_back(std::move(edge));
+      });
   return edges;
 }
 

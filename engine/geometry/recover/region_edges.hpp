@@ -1,4 +1,4 @@
-// Where regions meet: chains of sides between the same two, and the lines, circles and ellipses that they stand for.
+// The edges between regions: chains of mesh sides between the same two regions, and the curves that they stand for.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace verisim::recover {
 
-/// Edges in the order of their first vertices. Their `faces` are the numbers of the regions, one where the mesh is
+/// Edges in the order of their first vertices. Edge::faces holds the numbers of the regions; one where the mesh is
 /// open. A chain ends where more than two regions meet. @param tolerance  m, of vertices from their curve
 [[nodiscard]] std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Region>& regions,
                                               double tolerance);

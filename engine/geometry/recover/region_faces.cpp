@@ -10,7 +10,7 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kFullTurn = 2 * pinned::kPi;
+using pinned::kFullTurn;
 using Range = std::array<double, 2>;
 
 /// The vertices of a region, each once.
@@ -36,9 +36,8 @@ Range range_of(const std::vector<Vector3d>& points, Measure measure) {
   return range;
 }
 
-/// Spans of angle that the triangles cover, each from a to b in the shorter direction, as one range: the complement of
-/// the widest gap; a whole turn where there is none.
-Range covered(std::vector<Range> spans) {
+/// The union of angular spans as one range: the complement of the widest gap, or a full turn if there is no gap.
+Range covered_range(std::vector<Range> spans) {
   if (spans.empty()) return {0, kFullTurn};
   std::ranges::sort(spans);
   double reached = spans.front()[1], widest = 0, begin = spans.front()[0], end = reached;
@@ -55,9 +54,10 @@ Range covered(std::vector<Range> spans) {
   return widest > 0 ? Range{begin, end} : Range{spans.front()[0], spans.front()[0] + kFullTurn};
 }
 
-/// @param angle_at  angle of a vertex, none where it has no meaning
+/// The range of angles that the triangles cover [rad].
+/// @param angle_at  (p, angle&): sets the angle of a vertex; false where it has none (on the axis)
 template <typename AngleAt>
-Range turn_of(const CanonicalMesh& mesh, const Region& region, AngleAt angle_at) {
+Range angle_range(const CanonicalMesh& mesh, const Region& region, AngleAt angle_at) {
   std::vector<Range> spans;
   for (const std::uint32_t t : region.triangles) {
     Range span = {0, 0};
@@ -78,21 +78,21 @@ Range turn_of(const CanonicalMesh& mesh, const Region& region, AngleAt angle_at)
     }
     if (!first) spans.push_back(span);
   }
-  // On both sides of the cut at +-pi, so that what crosses it is seen from either.
+  // A span that crosses the cut at +-pi is listed on both sides of it.
   const std::size_t count = spans.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (spans[i][0] < -pinned::kPi) spans.push_back({spans[i][0] + kFullTurn, spans[i][1] + kFullTurn});
     if (spans[i][1] > pinned::kPi) spans.push_back({spans[i][0] - kFullTurn, spans[i][1] - kFullTurn});
   }
-  return covered(std::move(spans));
+  return covered_range(std::move(spans));
 }
 
-bool is_whole(const Range& turn) {
+bool is_full_turn(const Range& turn) {
   return turn[1] - turn[0] > kFullTurn - 1e-9;
 }
 
-/// Does a triangle of the region meet the ray from `origin` along `direction`?
-bool meets(const CanonicalMesh& mesh, const Region& region, const Vector3d& origin, const Vector3d& direction) {
+/// True if the ray from `origin` along `direction` hits a triangle of the region.
+bool ray_hits(const CanonicalMesh& mesh, const Region& region, const Vector3d& origin, const Vector3d& direction) {
   return std::ranges::any_of(region.triangles, [&](std::uint32_t t) {
     const Vector3d a = mesh.corner(t, 0) - origin, b = mesh.corner(t, 1) - origin, c = mesh.corner(t, 2) - origin;
     const double u = direction.dot(a.cross(b)), v = direction.dot(b.cross(c)), w = direction.dot(c.cross(a));
@@ -101,25 +101,25 @@ bool meets(const CanonicalMesh& mesh, const Region& region, const Vector3d& orig
   });
 }
 
-/// Sets u_range from the triangles, with the x axis where it begins unless it is a whole turn.
+/// Sets u_range from the triangles. The x axis is turned to where the range begins, unless it is a full turn.
 template <typename Round>
-void set_around(Face& face, Round& round, const Vector3d& point, const CanonicalMesh& mesh, const Region& region) {
+void set_u_range(Face& face, Round& round, const Vector3d& point, const CanonicalMesh& mesh, const Region& region) {
   const Vector3d x = round.x_axis, y = round.direction.cross(x);
-  const double nothing = 1e-9 * mesh.size;
-  const Range turn = turn_of(mesh, region, [&](const Vector3d& p, double& angle) {
+  const double axis_tolerance = 1e-9 * mesh.size;
+  const Range turn = angle_range(mesh, region, [&](const Vector3d& p, double& angle) {
     const Profile f = profile_of(p, point, round.direction);
     angle = pinned::atan2(f.outward.dot(y), f.outward.dot(x));
-    return f.rho > nothing;
+    return f.rho > axis_tolerance;
   });
   face.u_range = {0, kFullTurn};
-  if (is_whole(turn)) return;
+  if (is_full_turn(turn)) return;
   round.x_axis = pinned::cos(turn[0]) * x + pinned::sin(turn[0]) * y;
   face.u_range = {0, turn[1] - turn[0]};
 }
 
-class Bounds {
+class ParameterRanges {
  public:
-  Bounds(Face& face, const CanonicalMesh& mesh, const Region& region)
+  ParameterRanges(Face& face, const CanonicalMesh& mesh, const Region& region)
       : face_(face), mesh_(mesh), region_(region), points_(points_of(mesh, region)) {}
 
   void operator()(Plane& s) const {
@@ -128,32 +128,32 @@ class Bounds {
     face_.v_range = range_of(points_, [&](const Vector3d& p) { return (p - s.point).dot(y); });
   }
   void operator()(Cylinder& s) const {
-    set_around(face_, s, s.point, mesh_, region_);
+    set_u_range(face_, s, s.point, mesh_, region_);
     face_.v_range = heights(s.point, s.direction);
   }
   void operator()(Cone& s) const {
-    set_around(face_, s, s.point, mesh_, region_);
+    set_u_range(face_, s, s.point, mesh_, region_);
     face_.v_range = heights(s.point, s.direction);
   }
   void operator()(Sphere& s) const {
-    set_around(face_, s, s.center, mesh_, region_);
+    set_u_range(face_, s, s.center, mesh_, region_);
     face_.v_range = range_of(points_, [&](const Vector3d& p) {
       const Profile f = profile_of(p, s.center, s.direction);
       return pinned::atan2(f.height, f.rho);
     });
-    if (meets(mesh_, region_, s.center, s.direction)) face_.v_range[1] = 0.25 * kFullTurn;
-    if (meets(mesh_, region_, s.center, -s.direction)) face_.v_range[0] = -0.25 * kFullTurn;
+    if (ray_hits(mesh_, region_, s.center, s.direction)) face_.v_range[1] = 0.25 * kFullTurn;
+    if (ray_hits(mesh_, region_, s.center, -s.direction)) face_.v_range[0] = -0.25 * kFullTurn;
   }
   void operator()(Torus& s) const {
-    set_around(face_, s, s.center, mesh_, region_);
-    const double side = is_beyond_axis(s) ? -1 : 1;
+    set_u_range(face_, s, s.center, mesh_, region_);
+    const double side = is_past_axis(s) ? -1 : 1;
     if (side < 0) s.x_axis = -s.x_axis;
-    const Range turn = turn_of(mesh_, region_, [&](const Vector3d& p, double& angle) {
+    const Range turn = angle_range(mesh_, region_, [&](const Vector3d& p, double& angle) {
       const Profile f = profile_of(p, s.center, s.direction);
       angle = pinned::atan2(f.height, side * f.rho - s.major_radius);
       return true;
     });
-    face_.v_range = is_whole(turn) ? Range{0, kFullTurn} : turn;
+    face_.v_range = is_full_turn(turn) ? Range{0, kFullTurn} : turn;
   }
   void operator()(OtherSurface& /*s*/) const {}
 
@@ -162,13 +162,14 @@ class Bounds {
     return range_of(points_, [&](const Vector3d& p) { return (p - point).dot(axis); });
   }
 
-  /// A tube wider than its ring passes the axis: do these points belong to the tube on the other side?
-  [[nodiscard]] bool is_beyond_axis(const Torus& s) const {
+  /// True if the points belong to the part of the tube that has passed the axis: the tube is wider than its ring.
+  [[nodiscard]] bool is_past_axis(const Torus& s) const {
     double here = 0, beyond = 0;
     for (const Vector3d& p : points_) {
       const Profile f = profile_of(p, s.center, s.direction);
       const auto distance = [&](double rho) {
-        return std::abs(std::hypot(rho - s.major_radius, f.height) - s.minor_radius);
+        const double from_ring = rho - s.major_radius;
+        return std::abs(std::sqrt(from_ring * from_ring + f.height * f.height) - s.minor_radius);
       };
       here += distance(f.rho);
       beyond += distance(-f.rho);
@@ -188,7 +189,7 @@ Face face_of(const CanonicalMesh& mesh, const Region& region) {
   Face face;
   face.surface = region.surface;
   for (const std::uint32_t t : region.triangles) face.area += mesh.areas[t];
-  const Bounds bounds(face, mesh, region);
+  const ParameterRanges bounds(face, mesh, region);
   std::visit(bounds, face.surface);
   return face;
 }

@@ -1,4 +1,4 @@
-// From regions to faces: the surface with the bounds that its triangles have on it.
+// The face of a region: its surface with the parameter ranges that its triangles cover (engine/geometry/entity.hpp).
 #pragma once
 
 #include "engine/geometry/entity.hpp"
@@ -7,7 +7,7 @@
 
 namespace verisim::recover {
 
-/// The area is that of the triangles. Edges are left out.
+/// Face::area is that of the triangles. Face::edges stays empty.
 [[nodiscard]] Face face_of(const CanonicalMesh& mesh, const Region& region);
 
 }  // namespace verisim::recover

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/geometry/recover/growth.hpp"
+#include "engine/geometry/recover/neighborhoods.hpp"
+#include "engine/geometry/recover/region_growing.hpp"
+#include "engine/geometry/recover/region_merging.hpp"
 #include "engine/geometry/recover/regions.hpp"
-#include "engine/geometry/recover/second_thoughts.hpp"
-#include "engine/geometry/recover/surroundings.hpp"
 
 namespace verisim::recover {
 
 namespace {
 
-constexpr Kind kRoundKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
-constexpr std::size_t kAgain = 3;   // steps from what was taken
-constexpr std::size_t kBarren = 2;  // steps from where nothing fits
+constexpr Kind kCurvedKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
+constexpr std::size_t kRetrySteps = 3;   // smooth sides from a new region: facets within are tried again
+constexpr std::size_t kFailedSteps = 2;  // smooth sides from a seed without a fit: facets within are not tried
 constexpr std::size_t kFewFacets = 4;
 
 class Search {
@@ -22,86 +22,87 @@ class Search {
   Search(const CanonicalMesh& mesh, double tolerance, double round_step, const RecoverThresholds& thresholds)
       : regions_(mesh, tolerance, round_step, thresholds),
         facets_(regions_.facets.all),
-        surroundings_(regions_),
-        growth_(regions_),
+        neighborhoods_(regions_),
+        growing_(regions_),
         untried_(facets_.size(), true) {}
 
   std::vector<Region> run() {
-    while (try_all() || take_small_planes()) {
+    while (grow_from_all() || add_small_planes()) {
     }
-    give_to_larger(regions_);
-    take_remaining_planes();
-    release_patches(regions_);
-    take_rest();
+    merge_regions(regions_);
+    add_remaining_planes();
+    release_freeform_patches(regions_);
+    add_freeform_rest();
     std::vector<Region> result;
-    for (TakenRegion& region : regions_.all) {
+    for (FoundRegion& region : regions_.all) {
       if (!region.triangles.empty()) result.push_back({std::move(region.surface), std::move(region.triangles)});
     }
     return result;
   }
 
  private:
-  bool try_all() {
+  bool grow_from_all() {
     bool found = false;
     for (std::uint32_t facet = 0; facet < facets_.size(); ++facet) {
-      if (untried_[facet] && regions_.is_free_facet(facet)) found |= try_from(facet);
+      if (untried_[facet] && regions_.is_free_facet(facet)) found |= grow_from_facet(facet);
     }
     return found;
   }
 
-  /// They come late: until the round surfaces around are found, they may be pieces of one.
-  bool take_small_planes() {
+  /// Small facets become planes last: before the curved surfaces around are found, they may be pieces of one.
+  bool add_small_planes() {
     bool found = false;
     for (std::uint32_t facet = 0; facet < facets_.size(); ++facet) {
-      if (!regions_.is_free_facet(facet) || !borders_as_a_plane(facet)) continue;
-      regions_.take_plane(facet);
-      try_again_beside(regions_.all.back().triangles);
+      if (!regions_.is_free_facet(facet) || !has_plane_borders(facet)) continue;
+      regions_.add_plane(facet);
+      retry_beside(regions_.all.back().triangles);
       found = true;
     }
     return found;
   }
 
-  bool try_from(std::uint32_t facet) {
+  bool grow_from_facet(std::uint32_t facet) {
     untried_[facet] = false;
     std::optional<Candidate> best = best_from(facet);
     if (best) {
-      growth_.add_fans(*best);
-      regions_.take_round(best->fit, std::move(best->triangles));
-    } else if (!regions_.is_small(facet) && borders_as_a_plane(facet)) {
-      regions_.take_plane(facet);
+      growing_.add_fans(*best);
+      regions_.add_curved(best->fit, std::move(best->triangles));
+    } else if (!regions_.is_small(facet) && has_plane_borders(facet)) {
+      regions_.add_plane(facet);
     } else {
-      for (const std::uint32_t near : surroundings_.around(facet, kBarren)) untried_[near] = false;
+      for (const std::uint32_t near : neighborhoods_.k_ring(facet, kFailedSteps)) untried_[near] = false;
       return false;
     }
-    try_again_beside(regions_.all.back().triangles);
+    retry_beside(regions_.all.back().triangles);
     return true;
   }
 
   std::optional<Candidate> best_from(std::uint32_t facet) {
     const std::uint32_t seed = *std::ranges::max_element(facets_[facet].triangles, {},
                                                          [&](std::uint32_t t) { return regions_.mesh.areas[t]; });
-    const std::vector<std::vector<std::uint32_t>> samples = surroundings_.samples(facet);
+    const std::vector<std::vector<std::uint32_t>> samples = neighborhoods_.fit_samples(facet);
     std::optional<Candidate> best;
-    for (const Kind kind : kRoundKinds) {
+    for (const Kind kind : kCurvedKinds) {
       for (const std::vector<std::uint32_t>& sample : samples) {
         if (sample.size() < 3) continue;
-        for (const bool by_inner : {false, true}) {
-          if (by_inner && kind != Kind::torus) continue;  // through two circles pass cones and spheres, always
-          std::optional<Candidate> next = growth_.from(sample, kind, by_inner, seed);
-          if (next && (!best || next->area > regions_.thresholds.larger_by_far * best->area)) best = std::move(next);
+        for (const bool inner_only : {false, true}) {
+          if (inner_only && kind != Kind::torus) continue;  // a cone and a sphere pass through any two circles
+          std::optional<Candidate> next = growing_.grow_from(sample, kind, inner_only, seed);
+          if (next && (!best || next->area > regions_.thresholds.larger_by * best->area)) best = std::move(next);
         }
       }
     }
     return best;
   }
 
-  /// What a smooth neighbour measures across the common side.
+  /// Extent of a facet across one of its sides [m].
   [[nodiscard]] double width(std::uint32_t facet, const FacetSide& side) const {
     return facets_[facet].area / side.length;
   }
 
-  /// A piece of a round surface has neighbours about as wide as itself; a plane that passes into one has narrow ones.
-  [[nodiscard]] bool borders_as_a_plane(std::uint32_t facet) const {
+  /// True if each smooth neighbour is much narrower. A piece of a curved surface has neighbours about as wide as
+  /// itself; a plane that goes over into a curved surface has narrow ones.
+  [[nodiscard]] bool has_plane_borders(std::uint32_t facet) const {
     return std::ranges::all_of(facets_[facet].sides, [&](const FacetSide& side) {
       return !side.smooth || width(side.facet, side) < regions_.thresholds.narrower * width(facet, side);
     });
@@ -116,7 +117,8 @@ class Search {
     return sharp > regions_.thresholds.mostly_sharp * all;
   }
 
-  /// Planes that meet at small angles are few; pieces of a round or free surface are many, or border on one.
+  /// True if facets that meet smoothly are planes: they are few, and none borders smoothly on a region. Pieces of a
+  /// curved or free surface are many, or border on one.
   [[nodiscard]] bool are_planes(const std::vector<std::uint32_t>& joined) const {
     return joined.size() <= kFewFacets && std::ranges::all_of(joined, [&](std::uint32_t facet) {
              return std::ranges::all_of(facets_[facet].sides, [&](const FacetSide& side) {
@@ -125,8 +127,8 @@ class Search {
            });
   }
 
-  /// Facets near what was taken last have other surroundings now.
-  void try_again_beside(const std::vector<std::uint32_t>& triangles) {
+  /// Marks the facets near a new region as untried: their neighbourhoods have changed.
+  void retry_beside(const std::vector<std::uint32_t>& triangles) {
     std::vector<std::uint32_t> beside;
     for (const std::uint32_t t : triangles) {
       for (const std::uint32_t n : regions_.mesh.neighbors[t]) {
@@ -138,39 +140,39 @@ class Search {
     std::ranges::sort(beside);
     beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
     for (const std::uint32_t facet : beside) {
-      for (const std::uint32_t near : surroundings_.around(facet, kAgain)) untried_[near] = true;
+      for (const std::uint32_t near : neighborhoods_.k_ring(facet, kRetrySteps)) untried_[near] = true;
     }
   }
 
-  /// Planes that meet at small angles.
-  void take_remaining_planes() {
+  /// Planes that meet at small angles, and those with mostly sharp borders.
+  void add_remaining_planes() {
     std::vector<bool> seen(facets_.size(), false);
     for (std::uint32_t facet = 0; facet < facets_.size(); ++facet) {
       if (seen[facet] || !regions_.is_free_facet(facet)) continue;
-      const std::vector<std::uint32_t> joined = surroundings_.around(facet, facets_.size());
+      const std::vector<std::uint32_t> joined = neighborhoods_.k_ring(facet, facets_.size());
       for (const std::uint32_t f : joined) seen[f] = true;
       const bool planes = are_planes(joined);
       for (const std::uint32_t f : joined) {
-        if (planes || is_mostly_sharp(f)) regions_.take_plane(f);
+        if (planes || is_mostly_sharp(f)) regions_.add_plane(f);
       }
     }
   }
 
-  /// What fits nothing, as far as it is smooth.
-  void take_rest() {
+  /// Free triangles become freeform regions, one per smooth component.
+  void add_freeform_rest() {
     for (std::uint32_t t = 0; t < regions_.mesh.triangles.size(); ++t) {
-      if (regions_.is_free(t)) regions_.take_other(smooth_rest(t));
+      if (regions_.is_free(t)) regions_.add_freeform(smooth_component(t));
     }
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> smooth_rest(std::uint32_t seed) {
+  [[nodiscard]] std::vector<std::uint32_t> smooth_component(std::uint32_t seed) {
     std::vector<std::uint32_t> found = {seed};
-    met_.resize(regions_.mesh.triangles.size(), false);
-    met_[seed] = true;
+    visited_.resize(regions_.mesh.triangles.size(), false);
+    visited_[seed] = true;
     for (std::size_t i = 0; i < found.size(); ++i) {
       for (const std::uint32_t t : regions_.mesh.neighbors[found[i]]) {
-        if (t == kNone || met_[t] || !regions_.is_free(t) || !regions_.is_smooth(t, found[i])) continue;
-        met_[t] = true;
+        if (t == kNone || visited_[t] || !regions_.is_free(t) || !regions_.is_smooth(t, found[i])) continue;
+        visited_[t] = true;
         found.push_back(t);
       }
     }
@@ -180,10 +182,10 @@ class Search {
 
   Regions regions_;
   const std::vector<Facet>& facets_;
-  Surroundings surroundings_;
-  Growth growth_;
-  std::vector<bool> untried_;  // facets whose surroundings have changed since they were tried
-  std::vector<bool> met_;      // triangles that are in the rest
+  Neighborhoods neighborhoods_;
+  RegionGrowing growing_;
+  std::vector<bool> untried_;  // per facet: its neighbourhood has changed since it was tried
+  std::vector<bool> visited_;  // per triangle: in a smooth component
 };
 
 }  // namespace

@@ -1,9 +1,13 @@
-// From facets to surfaces: which triangles are pieces of one plane, cylinder, cone, sphere or torus.
+// Segmentation of a mesh into surfaces: which triangles are pieces of one plane, cylinder, cone, sphere or torus.
 //
-// From every facet, the largest first, surfaces of each kind are fitted to what lies around it, grown over the mesh as
-// long as vertices lie on them, fitted again to all that they cover, and grown again. The one that covers most is
-// taken; of equals the simplest. What is flat and borders as a plane does becomes a plane. Then second thoughts (what
-// a larger surface explains as well, what is a patch of a free form); what fits nothing stays.
+//   1. Seeds     Every facet is a seed, the largest first. Surfaces of each kind are fitted to the facets around it
+//                (neighborhoods.hpp).
+//   2. Growing   Each fit grows over the mesh and is fitted again (region_growing.hpp). The candidate of the largest
+//                area is taken; of equal ones the simplest kind.
+//   3. Planes    A facet that borders as a plane does becomes a plane.
+//   4. Merging   Regions that lie on a larger surface are merged into it. Patches of a free form are released again
+//                (region_merging.hpp).
+//   5. The rest  Triangles on no surface become `other` faces, joined where they meet smoothly.
 #pragma once
 
 #include <vector>
@@ -15,12 +19,13 @@
 namespace verisim::recover {
 
 struct Region {
-  Surface surface;                       ///< OtherSurface for what fits nothing
-  std::vector<std::uint32_t> triangles;  ///< ascending, joined by sides
+  Surface surface;                       ///< OtherSurface: no surface fits
+  std::vector<std::uint32_t> triangles;  ///< ascending, connected by sides
 };
 
-/// Every triangle is in one region. @param tolerance  m, of vertices from their surface  @param round_step  rad, the
-/// largest angle at which facets meet that can be pieces of one round surface
+/// Every triangle is in one region.
+/// @param tolerance   m, of vertices from their surface
+/// @param round_step  rad, the largest angle between neighbouring facets of one curved surface
 /// @pre the tolerance is finite and above 0; so is the step
 [[nodiscard]] std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step,
                                                const RecoverThresholds& thresholds);

@@ -17,16 +17,16 @@ Regions::Regions(const CanonicalMesh& given, double tolerance_m, double round_st
       cos_smooth(pinned::cos(round_step)),
       cos_step(pinned::cos(thresholds.longer_step * round_step)),
       facets(facets_of(mesh, tolerance, cos_smooth)),
-      is_rim_(mesh.vertices.size(), false),
+      on_sharp_edge_(mesh.vertices.size(), false),
       of_triangle_(mesh.triangles.size(), kNone),
-      taken_of_facet_(facets.all.size(), 0) {
+      assigned_in_facet_(facets.all.size(), 0) {
   VERISIM_ASSERT(is_positive(tolerance));
   VERISIM_ASSERT(cos_smooth < 1);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t beside = mesh.neighbors[t][i];
       if (beside != kNone && is_smooth(t, beside)) continue;
-      is_rim_[mesh.triangles[t][i]] = is_rim_[mesh.triangles[t][(i + 1) % 3]] = true;
+      on_sharp_edge_[mesh.triangles[t][i]] = on_sharp_edge_[mesh.triangles[t][(i + 1) % 3]] = true;
     }
   }
 }
@@ -42,39 +42,39 @@ double Regions::area_of(const std::vector<std::uint32_t>& triangles) const {
   return area;
 }
 
-Piece Regions::piece_of(const RoundFit& fit, std::uint32_t seed) const {
-  const bool inside_out = fit.surface.gradient(mesh.centers[seed]).dot(mesh.normals[seed]) < 0;
-  return {mesh, fit.surface, {tolerance, fit.by_inner ? &is_rim_ : nullptr, cos_step, inside_out, thresholds}};
+InlierTest Regions::inlier_test(const CurvedFit& fit, std::uint32_t seed) const {
+  const bool is_hole = fit.surface.gradient(mesh.centers[seed]).dot(mesh.normals[seed]) < 0;
+  return {mesh, fit.surface, {tolerance, fit.inner_only ? &on_sharp_edge_ : nullptr, cos_step, is_hole, thresholds}};
 }
 
-std::vector<Vector3d> Regions::points_of_triangles(const std::vector<std::uint32_t>& triangles, bool inner) const {
+std::vector<Vector3d> Regions::points_of_triangles(const std::vector<std::uint32_t>& triangles, bool inner_only) const {
   std::vector<std::uint32_t> vertices;
   for (const std::uint32_t t : triangles) {
     vertices.insert(vertices.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
   }
-  return points_of(std::move(vertices), inner);
+  return points_of(std::move(vertices), inner_only);
 }
 
-std::vector<Vector3d> Regions::points_of(std::vector<std::uint32_t> vertices, bool inner) const {
+std::vector<Vector3d> Regions::points_of(std::vector<std::uint32_t> vertices, bool inner_only) const {
   std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   std::vector<Vector3d> points;
   points.reserve(vertices.size());
   for (const std::uint32_t v : vertices) {
-    if (!inner || !is_rim_[v]) points.push_back(mesh.vertices[v]);
+    if (!inner_only || !on_sharp_edge_[v]) points.push_back(mesh.vertices[v]);
   }
   return points;
 }
 
-void Regions::take(TakenRegion region) {
+void Regions::add_region(FoundRegion region) {
   for (const std::uint32_t t : region.triangles) {
     of_triangle_[t] = static_cast<std::uint32_t>(all.size());
-    ++taken_of_facet_[facets.of_triangle[t]];
+    ++assigned_in_facet_[facets.of_triangle[t]];
   }
   all.push_back(std::move(region));
 }
 
-void Regions::take_round(const RoundFit& fit, std::vector<std::uint32_t> triangles) {
+void Regions::add_curved(const CurvedFit& fit, std::vector<std::uint32_t> triangles) {
   const std::uint32_t first = triangles.front();
   const bool hole = fit.surface.gradient(mesh.centers[first]).dot(mesh.normals[first]) < 0;
   Surface surface = fit.surface.surface();
@@ -83,23 +83,23 @@ void Regions::take_round(const RoundFit& fit, std::vector<std::uint32_t> triangl
         if constexpr (requires { s.hole; }) s.hole = hole;
       },
       surface);
-  take({std::move(surface), std::move(triangles), fit});
+  add_region({std::move(surface), std::move(triangles), fit});
 }
 
-void Regions::take_plane(std::uint32_t facet) {
+void Regions::add_plane(std::uint32_t facet) {
   const std::vector<std::uint32_t>& triangles = facets.all[facet].triangles;
   SurfaceValue plane = plane_through(points_of_triangles(triangles, false));
   if (plane.axis.dot(facets.all[facet].normal) < 0) plane.axis = -plane.axis;
-  take({plane.surface(), triangles, std::nullopt});
+  add_region({plane.surface(), triangles, std::nullopt});
 }
 
-void Regions::take_other(std::vector<std::uint32_t> triangles) {
-  take({OtherSurface{}, std::move(triangles), std::nullopt});
+void Regions::add_freeform(std::vector<std::uint32_t> triangles) {
+  add_region({OtherSurface{}, std::move(triangles), std::nullopt});
 }
 
-void Regions::add(std::uint32_t region, std::uint32_t triangle) {
+void Regions::assign(std::uint32_t region, std::uint32_t triangle) {
   of_triangle_[triangle] = region;
-  ++taken_of_facet_[facets.of_triangle[triangle]];
+  ++assigned_in_facet_[facets.of_triangle[triangle]];
   all[region].triangles.push_back(triangle);
 }
 
@@ -113,7 +113,7 @@ void Regions::merge(std::uint32_t region, std::uint32_t into) {
 void Regions::release(std::uint32_t region) {
   for (const std::uint32_t t : all[region].triangles) {
     of_triangle_[t] = kNone;
-    --taken_of_facet_[facets.of_triangle[t]];
+    --assigned_in_facet_[facets.of_triangle[t]];
   }
   all[region].triangles.clear();
 }

@@ -1,29 +1,12 @@
 #include "engine/geometry/recover/surface_value.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim::recover {
 
 namespace {
-
-constexpr double kTiny = 1e-300;
-
-struct ValueOf {
-  using Result = std::optional<SurfaceValue>;
-  Result operator()(const Plane& s) const { return SurfaceValue{Kind::plane, s.point, s.normal}; }
-  Result operator()(const Cylinder& s) const { return SurfaceValue{Kind::cylinder, s.point, s.direction, s.radius}; }
-  Result operator()(const Cone& s) const {
-    return SurfaceValue{Kind::cone, s.point, s.direction, s.radius, pinned::tan(s.half_angle)};
-  }
-  Result operator()(const Sphere& s) const { return SurfaceValue{Kind::sphere, s.center, s.direction, s.radius}; }
-  Result operator()(const Torus& s) const {
-    return SurfaceValue{Kind::torus, s.center, s.direction, s.major_radius, s.minor_radius};
-  }
-  Result operator()(const OtherSurface& /*s*/) const { return std::nullopt; }
-};
 
 Cone cone_of(const SurfaceValue& s) {
   Cone cone;
@@ -43,15 +26,16 @@ Cone cone_of(const SurfaceValue& s) {
 }  // namespace
 
 Profile profile_of(const Vector3d& p, const Vector3d& point, const Vector3d& axis) {
-  const Vector3d arm = p - point;
-  const double height = arm.dot(axis);
-  const Vector3d across = arm - height * axis;
-  const double rho = across.norm();
-  return {rho, height, rho > 0 ? Vector3d(across / rho) : Vector3d(axis.unitOrthogonal())};
+  return verisim::profile_of(p, point, axis, [&] { return Vector3d(axis.unitOrthogonal()); });
 }
 
 std::optional<SurfaceValue> SurfaceValue::of(const Surface& surface) {
-  return std::visit(ValueOf{}, surface);
+  const std::optional<AnalyticSurface> known = AnalyticSurface::from(surface);
+  if (!known) return std::nullopt;
+  const Meridian& m = known->meridian();
+  const bool is_torus = m.kind == Kind::torus;
+  return SurfaceValue{m.kind, known->point(), known->axis(), is_torus ? m.ring : m.radius,
+                      is_torus ? m.radius : m.tangent};
 }
 
 Surface SurfaceValue::surface() const {
@@ -71,63 +55,58 @@ Surface SurfaceValue::surface() const {
   return OtherSurface{};
 }
 
-double SurfaceValue::row(const Vector3d& p, const Vector3d& x, const Vector3d& y, Row& d) const {
-  d.setZero();
-  if (kind == Kind::sphere) {
-    const Vector3d arm = p - point;
-    const double r = arm.norm();
-    d.head<3>() = -arm / std::max(r, kTiny);
-    d[5] = -1;
-    return r - a;
+Meridian SurfaceValue::meridian() const {
+  switch (kind) {
+    case Kind::plane:
+      return {};
+    case Kind::cylinder:
+    case Kind::sphere:
+      return {.kind = kind, .radius = a};
+    case Kind::cone: {
+      const double cosine = 1 / std::sqrt(1 + b * b);
+      return {.kind = kind, .radius = a, .cosine = cosine, .sine = b * cosine, .tangent = b};
+    }
+    case Kind::torus:
+      break;
   }
-  const Profile f = profile_of(p, point, axis);
-  double by_rho = 1, by_height = 0, distance = 0;
-  if (kind == Kind::plane) {
-    distance = f.height;
-    by_rho = 0, by_height = 1;
-  } else if (kind == Kind::cylinder) {
-    distance = f.rho - a;
-    d[5] = -1;
-  } else if (kind == Kind::cone) {
-    const double cosine = 1 / std::sqrt(1 + b * b);
-    distance = (f.rho - a - f.height * b) * cosine;
-    by_rho = cosine, by_height = -b * cosine;
-    d[5] = -cosine, d[6] = -f.height * cosine;
-  } else {
-    const double out = f.rho - a, r = std::max(std::sqrt(out * out + f.height * f.height), kTiny);
-    distance = r - b;
-    by_rho = out / r, by_height = f.height / r;
-    d[5] = -by_rho, d[6] = -1;
-  }
-  d.head<3>() = -by_rho * f.outward - by_height * axis;
-  const double tilt = by_height * f.rho - by_rho * f.height;
-  d[3] = tilt * f.outward.dot(x), d[4] = tilt * f.outward.dot(y);
-  return distance;
+  return {.kind = Kind::torus, .radius = b, .ring = a};
 }
 
-// The distance moves against the point as it moves with p.
+double SurfaceValue::row(const Vector3d& p, const Vector3d& x, const Vector3d& y, Row& d) const {
+  const Profile f = profile_of(p, point, axis);
+  const Meridian m = meridian();
+  const MeridianAt at = m.at(f.rho, f.height);
+  const double by_rho = at.out / at.length, by_height = at.up / at.length;
+  d.head<3>() = -by_rho * f.outward - by_height * axis;  // against the point as with p
+  const double tilt = kind == Kind::sphere ? 0 : by_height * f.rho - by_rho * f.height;
+  d[3] = tilt * f.outward.dot(x), d[4] = tilt * f.outward.dot(y);
+  d.tail<2>().setZero();
+  switch (kind) {
+    case Kind::plane:
+      break;
+    case Kind::cylinder:
+    case Kind::sphere:
+      d[5] = -1;
+      break;
+    case Kind::cone:
+      d[5] = -m.cosine, d[6] = -f.height * m.cosine;
+      break;
+    case Kind::torus:
+      d[5] = -by_rho, d[6] = -1;
+      break;
+  }
+  return at.distance;
+}
+
 Vector3d SurfaceValue::gradient(const Vector3d& p) const {
-  Row d;
-  static_cast<void>(row(p, Vector3d::Zero(), Vector3d::Zero(), d));
-  return -d.head<3>();
+  const Profile f = profile_of(p, point, axis);
+  const MeridianAt at = meridian().at(f.rho, f.height);
+  return at.out / at.length * f.outward + at.up / at.length * axis;
 }
 
 double SurfaceValue::distance(const Vector3d& p) const {
-  Row ignored;
-  return row(p, Vector3d::Zero(), Vector3d::Zero(), ignored);
-}
-
-double SurfaceValue::radius_near(const Vector3d& p) const {
-  switch (kind) {
-    case Kind::plane:
-      return std::numeric_limits<double>::infinity();
-    case Kind::cone:
-      return profile_of(p, point, axis).rho * std::sqrt(1 + b * b);
-    case Kind::torus:
-      return std::min(b, std::max(profile_of(p, point, axis).rho, kTiny));
-    default:
-      return a;
-  }
+  const Profile f = profile_of(p, point, axis);
+  return meridian().distance(f.rho, f.height);
 }
 
 SurfaceValue SurfaceValue::moved(const Row& step, const Vector3d& x, const Vector3d& y) const {

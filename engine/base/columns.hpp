@@ -1,0 +1,131 @@
+// What is recorded of every frame. One declaration per fact: path, shape, unit, meaning and where the value comes from
+// stand in one place, and who stores, hashes, compares or documents a fact reads it from there.
+//
+//     columns.add("/state/time", "s", "simulated time at the end of the frame", [&] { return world.time(); });
+//
+// Type and shape follow from what the getter returns (Recorded below). Rows are packed without padding: first all that
+// stands under /state, so that the state of a frame is one run of bytes, then all else, each in the order of adding.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/named_array.hpp"
+#include "engine/base/pose.hpp"
+
+namespace verisim {
+
+/// One dataset that grows with the frames.
+struct Column {
+  std::string path;  ///< "/state/body/pin/pose"
+  Dtype dtype = Dtype::f64;
+  std::size_t width = 1;  ///< 1: dataset of shape [N]; else [N, width]
+  std::string units;
+  std::string description;
+  std::size_t offset = 0;  ///< bytes from the start of the row; set by Schema::add
+  /// u8 of width 1: value i means enum_names[i] (an HDF5 enum). Otherwise names of the components (stages of /timing).
+  std::vector<std::string> enum_names;
+  /// Empty: every frame adds a row. Else the path of a u32 column of the same schema: only frames where that is not 0
+  /// add a row to this one (what runs at a rate of its own).
+  std::string due = {};
+  [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
+};
+
+/// Values go to a row one behind the other.
+template <typename T>
+void put_value(std::byte*& at, const T& value) {
+  std::memcpy(at, &value, sizeof value);
+  at += sizeof value;
+}
+
+/// How a type is stored: number type, how many of them, and writing them.
+template <typename T>
+struct Recorded {
+  static constexpr Dtype kType = dtype_of<T>();
+  static constexpr std::size_t kWidth = 1;
+  static void put(std::byte*& at, const T& value) { put_value(at, value); }
+};
+template <>
+struct Recorded<bool> {
+  static constexpr Dtype kType = Dtype::u8;
+  static constexpr std::size_t kWidth = 1;
+  static void put(std::byte*& at, bool value) { put_value(at, static_cast<std::uint8_t>(value)); }
+};
+template <typename T, std::size_t N>
+struct Recorded<std::array<T, N>> {
+  static constexpr Dtype kType = dtype_of<T>();
+  static constexpr std::size_t kWidth = N;
+  static void put(std::byte*& at, const std::array<T, N>& values) { put_value(at, values); }
+};
+template <>
+struct Recorded<Pose> {  ///< position, quaternion x y z w
+  static constexpr Dtype kType = Dtype::f64;
+  static constexpr std::size_t kWidth = 7;
+  static void put(std::byte*& at, const Pose& X) {
+    const Quaterniond& q = X.rotation;
+    put_value(at, std::array{X.position.x(), X.position.y(), X.position.z(), q.x(), q.y(), q.z(), q.w()});
+  }
+};
+template <>
+struct Recorded<Twist> {  ///< linear, angular
+  static constexpr Dtype kType = Dtype::f64;
+  static constexpr std::size_t kWidth = 6;
+  static void put(std::byte*& at, const Twist& v) {
+    for (const Vector3d* part : {&v.linear, &v.angular}) put_value(at, std::array{part->x(), part->y(), part->z()});
+  }
+};
+template <>
+struct Recorded<Wrench> {  ///< force, torque
+  static constexpr Dtype kType = Dtype::f64;
+  static constexpr std::size_t kWidth = 6;
+  static void put(std::byte*& at, const Wrench& w) {
+    for (const Vector3d* part : {&w.force, &w.torque}) put_value(at, std::array{part->x(), part->y(), part->z()});
+  }
+};
+
+class Columns {
+ public:
+  /// Declares a fact. `get` is called once a frame when the row is filled; it must not allocate. `names`: of an enum's
+  /// values or of the components (Column::enum_names). `due`: Column::due.
+  template <std::invocable Get>
+  void add(std::string path, std::string units, std::string description, Get get, std::vector<std::string> names = {},
+           std::string due = {}) {
+    using Value = std::remove_cvref_t<std::invoke_result_t<Get>>;
+    Column column{std::move(path),  Recorded<Value>::kType, Recorded<Value>::kWidth,
+                  std::move(units), std::move(description), 0,
+                  std::move(names), std::move(due)};
+    Facts& facts = column.path.starts_with("/state/") ? state_ : other_;
+    facts.bytes += column.bytes();
+    facts.columns.push_back(std::move(column));
+    facts.put.push_back([get = std::move(get)](std::byte*& at) { Recorded<Value>::put(at, get()); });
+  }
+
+  [[nodiscard]] const std::vector<Column>& state() const { return state_.columns; }
+  [[nodiscard]] const std::vector<Column>& other() const { return other_.columns; }
+  [[nodiscard]] std::size_t state_bytes() const { return state_.bytes; }
+  [[nodiscard]] std::size_t other_bytes() const { return other_.bytes; }
+
+  /// Writes state_bytes() or other_bytes() from `at` on. No allocation. About 3 ns a fact.
+  void put_state(std::byte* at) const { state_.put_all(at); }
+  void put_other(std::byte* at) const { other_.put_all(at); }
+
+ private:
+  struct Facts {
+    std::vector<Column> columns;
+    std::vector<std::function<void(std::byte*&)>> put;
+    std::size_t bytes = 0;
+    void put_all(std::byte* at) const {
+      const std::byte* const end = at + bytes;
+      for (const auto& put_next : put) put_next(at);
+      VERISIM_ASSERT(at == end);
+    }
+  };
+  Facts state_, other_;
+};
+
+}  // namespace verisim

@@ -1,0 +1,52 @@
+// The place on a sample's segment at which the ball that the curve carries is closest to a surface. Private to this
+// folder.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/exact/meridian.hpp"
+
+namespace verisim::exact {
+
+/// A place on a feature's curve. For an arc c and s are cosine and sine of its parameter, for a line the parameter and
+/// 0.
+struct Place {
+  double t;  ///< parameter, counted from the segment's middle
+  double c, s;
+};
+
+/// The place `t` beyond the segment's middle (c, s). Cosine and sine of t by their series, to 1e-12. @pre |t| <= pi /
+/// 16
+inline Place place_at(bool is_arc, double c, double s, double t) {
+  if (!is_arc) return {t, c + t, s};
+  const double q = t * t;
+  const double cosine = 1 - q * (1.0 / 2 - q * (1.0 / 24 - q * (1.0 / 720 - q * (1.0 / 40320))));
+  const double sine = t * (1 - q * (1.0 / 6 - q * (1.0 / 120 - q * (1.0 / 5040))));
+  return {t, c * cosine - s * sine, s * cosine + c * sine};
+}
+
+/// Newton's method on the distance, started at the segment's middle (c, s) and clamped to the segment. Where the
+/// distance has a maximum instead of a minimum, the downhill end is taken. Over one segment the
+/// distance is nearly a parabola, so most samples need one step.
+/// @param half          of the segment's width, in t
+/// @param radius_slope  derivative by t of the radius of the ball that the curve carries
+inline Place closest_place(const CurveFromSurface& curve, double c, double s, double half, double radius_slope = 0) {
+  constexpr int kStepsMax = 5;
+  constexpr double kGain = 1e-10;  // m: what another step would have to win
+  Place at{0, c, s};
+  if (half == 0) return at;
+  with_measure(curve, [&](auto&& measure_at) {
+    for (int i = 0; i < kStepsMax; ++i) {
+      const Measure m = measure_at(at.c, at.s);
+      const double slope = m.slope - radius_slope;
+      const double wanted = m.bend > 0 ? at.t - slope / m.bend : (slope > 0 ? -half : half);
+      const double t = std::clamp(wanted, -half, half);
+      if (std::abs((t - at.t) * slope) < kGain) return;
+      at = place_at(curve.is_arc, c, s, t);
+    }
+  });
+  return at;
+}
+
+}  // namespace verisim::exact

@@ -1,0 +1,167 @@
+#include "engine/exact/edge_ownership.hpp"
+
+namespace verisim::exact {
+namespace {
+
+constexpr double kSameDistance = 1e-12;  // m, of two faces: a tenth of what double precision says of a body of metres
+/// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
+/// useful normal.
+constexpr double kBlade = 0.1;
+
+/// True if a point lies beyond a smooth edge, seen from the face.
+bool is_beyond(const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
+  const ExactEdge::Mark* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const ExactEdge::Mark& mark : edge.marks) {
+    const double distance = (mark.point - p).squaredNorm();
+    if (distance >= least) continue;
+    least = distance;
+    nearest = &mark;
+  }
+  return nearest != nullptr && nearest->outward[edge.faces[0] == face ? 0 : 1].dot(p - nearest->point) > 0;
+}
+
+/// True if a point of a face's surface lies within the face.
+bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot) {
+  const Trim::Answer answer = body.faces[face].trim->find(*body.faces[face].surface, foot);
+  if (answer.where != Trim::Where::border) return answer.where == Trim::Where::inside;
+  for (const std::uint32_t e : answer.edges) {
+    const ExactEdge& edge = body.edges[e];
+    if (edge.convexity == Convexity::smooth) {
+      if (is_beyond(edge, face, foot)) return false;
+    } else {
+      const double distance = body.faces[face_across(edge, face)].surface->at(foot).distance;
+      if (!edge.limits_face_at(face, foot, distance)) continue;
+      if (edge.convexity == Convexity::convex ? distance > 0 : distance < 0) return false;
+    }
+  }
+  return true;
+}
+
+Place closest_place_to(const BodyPair& pair, const PreciseSurface& surface, const PlacedFeature& placed,
+                       std::uint32_t sample) {
+  return closest_place(pair.seen_from(surface, placed, pair.motion.free_twist), pair.mover.sample_c[sample],
+                       pair.mover.sample_s[sample], placed.feature->half_width);
+}
+
+/// True if the candidate's place, on the edge of `face` and `other`, lies within `face` and inside of every third face
+/// that shares a convex edge with `face`.
+bool is_outermost(const BodyPair& pair, const Candidate& c, std::uint32_t face, std::uint32_t other) {
+  const PreciseSurface& surface = *pair.base.faces[face].surface;
+  const Trim::Answer answer = pair.base.faces[face].trim->find(surface, c.p - c.at.distance * surface.at(c.p).normal);
+  for (const std::uint32_t e : answer.edges) {
+    const ExactEdge& edge = pair.base.edges[e];
+    const std::uint32_t third = face_across(edge, face);
+    if (edge.convexity != Convexity::convex || third == other) continue;
+    const double distance = pair.base.faces[third].surface->at(c.p).distance;
+    if (distance > c.at.distance && edge.limits_face_at(face, c.p, distance)) return false;
+  }
+  return answer.where != Trim::Where::outside;
+}
+
+/// Finds the place where the sample's segment crosses the edge between two faces. There both distances are equal, and
+/// the contact normal is perpendicular to both curves. If there is such a place, changes `c` into it and returns true.
+bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
+                Candidate& c) {
+  const PreciseSurface& a = *pair.base.faces[face].surface;
+  const PreciseSurface& b = *pair.base.faces[other].surface;
+  if (placed.feature->half_width == 0) return false;
+  const Place near_b = closest_place_to(pair, b, placed, c.sample);
+  const Vector3d p_b = placed.point(near_b);
+  double t_a = c.place.t;  // here b owns the place
+  double t_b = near_b.t;   // here a should
+  double d_a = c.at.distance - b.at(c.p).distance;
+  double d_b = a.at(p_b).distance - b.at(p_b).distance;
+  if (!(d_a < 0 && d_b > 0)) return false;
+  SurfaceAt other_at{};
+  constexpr int kStepsMax = 30;
+  for (int i = 0; i < kStepsMax; ++i) {  // false position, with the Illinois rule
+    const double t = t_a + (t_b - t_a) * (d_a / (d_a - d_b));
+    c.place = place_at(placed.is_arc(), pair.mover.sample_c[c.sample], pair.mover.sample_s[c.sample], t);
+    c.p = placed.point(c.place);
+    c.at = a.at(c.p);
+    other_at = b.at(c.p);
+    const double d = c.at.distance - other_at.distance;
+    if (std::abs(d) < kSameDistance) break;
+    if (d < 0) {
+      t_a = t;
+      d_a = d;
+      d_b *= 0.5;
+    } else {
+      t_b = t;
+      d_b = d;
+      d_a *= 0.5;
+    }
+  }
+  // The blend of both normals that is perpendicular to the segment.
+  const Vector3d tangent = placed.tangent(c.place);
+  const double slope_a = c.at.normal.dot(tangent);
+  const double slope_b = other_at.normal.dot(tangent);
+  if (slope_a * slope_b >= 0) return false;
+  const double weight_a = slope_b / (slope_b - slope_a);
+  const Vector3d mixed = weight_a * c.at.normal + (1 - weight_a) * other_at.normal;
+  const double length = mixed.norm();
+  if (length < kBlade) return false;
+  c.normal = mixed / length;
+  c.gap = c.at.distance / length;
+  c.edge_fraction = 4 * weight_a * (1 - weight_a);
+  return c.gap > -pair.base.options.spacing && is_outermost(pair, c, face, other) && is_outermost(pair, c, other, face);
+}
+
+}  // namespace
+
+OwnershipRule ownership_rule(double a, double b, double coincident) {
+  if (a >= 0 && b >= 0) return OwnershipRule::by_free_motion;
+  return std::max(a, b) >= 0 && std::min(a, b) > -coincident ? OwnershipRule::by_last_motion
+                                                             : OwnershipRule::by_position;
+}
+
+std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face) {
+  return edge.faces[0] == face ? edge.faces[1] : edge.faces[0];
+}
+
+bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool wins_tie) {
+  double a = mine.distance;
+  double b = other.distance;
+  const OwnershipRule rule = ownership_rule(a, b, pair.motion.thresholds.coincident);
+  if (rule != OwnershipRule::by_position) {
+    const Vector3d step =
+        pair.moved(p, rule == OwnershipRule::by_free_motion ? pair.motion.free_twist : pair.motion.last_twist);
+    a += mine.normal.dot(step);
+    b += other.normal.dot(step);
+  }
+  return a > b || (a == b && wins_tie);
+}
+
+bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, Candidate& c) {
+  const Feature& feature = *placed.feature;
+  const Vector3d foot = c.p - c.at.distance * c.at.normal;
+  if (feature.own_face != kNoFace) {
+    const Vector3d contact_point =
+        pair.motion.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.p);
+    const double off_own_face = std::abs(pair.mover.faces[feature.own_face].surface->at(contact_point).distance);
+    const SearchThresholds& fade = pair.motion.thresholds;
+    c.weight = std::min(1.0, (fade.own_face_none - off_own_face) / (fade.own_face_none - fade.own_face_full));
+    return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
+  }
+  const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);
+  if (answer.where == Trim::Where::outside) return false;
+  for (const std::uint32_t e : answer.edges) {
+    const ExactEdge& edge = pair.base.edges[e];
+    const std::uint32_t other = face_across(edge, face);
+    if (edge.convexity == Convexity::smooth && is_beyond(edge, face, foot)) return false;
+    if (edge.convexity == Convexity::smooth) continue;
+    const SurfaceAt there = pair.base.faces[other].surface->at(c.p);
+    if (!edge.limits_face_at(face, c.p, there.distance)) continue;
+    if (edge.convexity == Convexity::concave) {
+      // Far behind the face across: if the wall there is thin, the place is outside of the body, on its far side.
+      if (there.distance < -pair.motion.margin) return false;
+      continue;
+    }
+    if (owns_point(pair, c.p, c.at, there, face < other)) continue;
+    return face < other && cross_edge(pair, placed, face, other, c);
+  }
+  return true;
+}
+
+}  // namespace verisim::exact

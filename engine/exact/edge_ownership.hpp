@@ -1,0 +1,38 @@
+// Sharp-edge ownership: which of two faces that meet in an edge a point near that edge belongs to. At a convex edge the
+// solid is the intersection of the two half spaces, so the face with the larger signed distance owns the point; at a
+// concave edge it is their union, and either face keeps its own points. exact_link.hpp gives the rules and their
+// reasons. Base coordinates [m] (see candidate.hpp). Private to this folder.
+#pragma once
+
+#include "engine/exact/candidate.hpp"
+
+namespace verisim::exact {
+
+/// Which distances are compared at a convex edge.
+///   by_position     those of the point as it is: the point is inside both faces
+///   by_free_motion  those after the step without contact: the point is outside both, and the face that it would pass
+///                   last owns it
+///   by_last_motion  those after a repetition of the last step: the point lies on one of the faces. It slides along
+///                   that face; its motion without contact would push it into the face and says nothing about sliding
+enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_motion };
+/// @param a, b        signed distances of the point from the two faces [m]
+/// @param coincident  m: SearchThresholds::coincident
+[[nodiscard]] OwnershipRule ownership_rule(double a, double b, double coincident);
+
+/// The other face of an edge of `face`.
+[[nodiscard]] std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face);
+
+/// True if `mine` owns the point p against `other`, its neighbour across a convex edge of the base.
+/// @param mine, other  distance and normal of the two faces at p
+/// @param wins_tie     the answer where both are equally far
+[[nodiscard]] bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other,
+                              bool wins_tie);
+
+/// True if the candidate becomes a row against `face` of the base: its foot lies within the face's trim, and no sharp
+/// edge gives the point to another face. Where the sample's segment crosses a convex edge of the face, the candidate
+/// is changed into the contact of edge against edge. Sets the candidate's weight.
+/// @pre place, point, gap and normal of `c` are those against `face`
+[[nodiscard]] bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face,
+                                    Candidate& c);
+
+}  // namespace verisim::exact

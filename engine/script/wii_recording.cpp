@@ -1,0 +1,133 @@
+#include "engine/script/wii_recording.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "engine/base/error.hpp"
+
+namespace verisim {
+namespace {
+
+constexpr std::array kChannelColumns = {"battery", "gx", "gy", "gz", "x1", "y1", "s1", "x2",
+                                        "y2",      "s2", "x3", "y3", "s3", "x4", "y4", "s4"};
+constexpr std::array kPoseColumns = {"px", "py", "pz", "qx", "qy", "qz", "qw"};
+
+/// The numbers of a header value, separated by blanks or commas.
+std::vector<double> numbers(const std::string& file, const std::string& key, const std::string& text) {
+  std::vector<double> values;
+  const char* at = text.c_str();
+  while (*at != '\0') {
+    if (*at == ' ' || *at == ',' || *at == '\t') {
+      ++at;
+      continue;
+    }
+    char* end = nullptr;
+    const double value = std::strtod(at, &end);
+    if (end == at || !std::isfinite(value))
+      fail(ErrorKind::input,
+           "{}: '# {}: {}' has something at '{}' that is no number; write numbers with blanks between", file, key, text,
+           at);
+    values.push_back(value);
+    at = end;
+  }
+  return values;
+}
+
+void require_count(const std::string& file, const std::string& key, std::size_t found, std::size_t wanted) {
+  if (found != wanted)
+    fail(ErrorKind::input, "{}: '# {}:' has {} numbers but must have {}; see the trace format", file, key, found,
+         wanted);
+}
+
+wii::LedLayout leds_of(const std::string& file, const std::string& text) {
+  wii::LedLayout leds;
+  leds.count = 0;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(';', begin), text.size());
+    const std::vector<double> p = numbers(file, "leds", text.substr(begin, end - begin));
+    begin = end + 1;
+    if (p.empty() && begin > text.size()) break;  // a trailing semicolon
+    require_count(file, "leds", p.size(), 3);
+    if (leds.count == wii::kLedsMax)
+      fail(ErrorKind::input, "{}: '# leds:' names more than {} LEDs, but a remote sees no more; leave some out", file,
+           wii::kLedsMax);
+    leds.p_H[static_cast<std::size_t>(leds.count++)] = {p[0], p[1], p[2]};
+  }
+  return leds;
+}
+
+Pose pose_of(const std::string& file, const std::vector<double>& p) {
+  Pose pose{{p[0], p[1], p[2]}, {p[6], p[3], p[4], p[5]}};
+  if (!(pose.rotation.norm() > 0.5 && pose.rotation.norm() < 2))
+    fail(ErrorKind::input, "{}: '# remote_pose:' has a quaternion of length {}; write px py pz qx qy qz qw", file,
+         pose.rotation.norm());
+  pose.rotation.normalize();
+  return pose;
+}
+
+void read_header(const std::string& file, const Trace& trace, wii::Recording& recording) {
+  for (const auto& [key, text] : trace.extra) {
+    if (key == "leds") recording.settings.leds = leds_of(file, text);
+    if (key == "fov_deg") {
+      const std::vector<double> fov = numbers(file, key, text);
+      require_count(file, key, fov.size(), 2);
+      recording.settings.fov = {fov[0] * wii::kDegree, fov[1] * wii::kDegree};
+    }
+    if (key == "remote_pose") {
+      const std::vector<double> p = numbers(file, key, text);
+      require_count(file, key, p.size(), 7);
+      recording.X_WR = pose_of(file, p);
+      recording.placed = true;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> wii_trace_columns() {
+  std::vector<std::string> columns = {"t"};
+  columns.insert(columns.end(), kChannelColumns.begin(), kChannelColumns.end());
+  return columns;
+}
+
+wii::TrackerSettings wii_settings_of(const std::string& name, const Trace& trace) {
+  wii::Recording recording;
+  read_header(name, trace, recording);
+  return recording.settings;
+}
+
+wii::Recording read_wii_recording(Inputs& inputs, const std::string& name, const TraceLimits& limits) {
+  return wii_recording_of(name, parse_trace(name, inputs.read(name), "wii", limits));
+}
+
+wii::Recording wii_recording_of(const std::string& file, const Trace& trace) {
+  wii::Recording recording;
+  read_header(file, trace, recording);
+
+  std::array<std::size_t, kChannelColumns.size()> channel{};
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const int column = trace.column(kChannelColumns[i]);
+    if (column < 0)
+      fail(ErrorKind::input, "{}: column '{}' is missing; a wii trace has all 16", file, kChannelColumns[i]);
+    channel[i] = static_cast<std::size_t>(column);
+  }
+  std::array<int, kPoseColumns.size()> pose{};
+  bool truth = true;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    pose[i] = trace.column(kPoseColumns[i]);
+    truth = truth && pose[i] >= 0;
+  }
+  for (std::size_t row = 0; row < trace.rows(); ++row) {
+    recording.t.push_back(trace.at(row, 0));
+    wii::Channels& channels = recording.channels.emplace_back();
+    for (std::size_t i = 0; i < channel.size(); ++i) channels[i] = trace.at(row, channel[i]);
+    if (!truth) continue;
+    const auto at = [&](std::size_t i) { return trace.at(row, static_cast<std::size_t>(pose[i])); };
+    recording.truth.push_back({{at(0), at(1), at(2)}, Quaterniond(at(6), at(3), at(4), at(5)).normalized()});
+  }
+  return recording;
+}
+
+}  // namespace verisim

@@ -1,0 +1,60 @@
+// Precise contacts, found and solved: every body that an exact pair can move is prepared without those contacts, then
+// each island of bodies that touch is one convex problem (engine/exact/convex_step.hpp).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/exact/convex_step.hpp"
+#include "engine/simulation/stages/response.hpp"
+
+namespace verisim {
+
+class ExactResponse {
+ public:
+  ExactResponse(const World& world, const PairMethods& methods);
+
+  void solve(const World& world, const Contacts& contacts, const PairMethods& methods, const Response& response,
+             FrameCost& cost);
+
+  /// Does the body move with velocity(), under wrench(), in this frame?
+  [[nodiscard]] bool solved(std::size_t body) const { return bodies_[body].solved; }
+  [[nodiscard]] const ImplicitStep& step(std::size_t body) const { return bodies_[body].step; }
+  [[nodiscard]] const Vector6d& velocity(std::size_t body) const { return bodies_[body].velocity; }
+  [[nodiscard]] const Wrench& wrench(std::size_t body) const { return bodies_[body].wrench; }
+
+  /// What the precise contacts of a link do to its second body.
+  [[nodiscard]] const Wrench& on_second(std::size_t link) const { return links_[link].on_second; }
+  [[nodiscard]] std::uint32_t count(std::size_t link) const { return links_[link].acting; }  ///< rows that push
+  [[nodiscard]] double depth_max(std::size_t link) const { return links_[link].depth_max; }  ///< m
+  [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return bodies_[body].contacts; }
+
+ private:
+  struct OfBody {
+    bool solved = false;
+    ImplicitStep step;
+    Vector6d velocity = Vector6d::Zero();
+    Wrench wrench;
+    int in_solver = exact::kFixed;
+    std::uint64_t contacts = 0;
+  };
+  struct OfLink {
+    exact::ExactLink* search = nullptr;  ///< null: not in this frame
+    Wrench on_second;
+    std::uint32_t acting = 0;
+    double depth_max = 0;
+  };
+  void begin(const World& world, const Response& response);
+  void find(const World& world, const Contacts& contacts, const PairMethods& methods, FrameCost& cost);
+  void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
+  [[nodiscard]] double closing(const World& world, const Link& link) const;
+  void solve_island(const World& world, std::size_t island, FrameCost& cost);
+  void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
+
+  std::unique_ptr<exact::ConvexStep> solver_;  ///< null: no pair has precise contacts
+  std::vector<OfBody> bodies_;
+  std::vector<OfLink> links_;
+  std::vector<std::size_t> island_;  ///< of each body: the number of its island's first body
+};
+
+}  // namespace verisim

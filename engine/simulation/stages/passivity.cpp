@@ -1,0 +1,59 @@
+#include "engine/simulation/stages/passivity.hpp"
+
+#include <algorithm>
+
+#include "engine/simulation/stages/groups.hpp"
+
+namespace verisim {
+
+Passivity::Passivity(const World& world)
+    : link_watched_(world.links.size(), false),
+      watched_(world.bodies.size(), false),
+      group_(world.bodies.size()),
+      work_(world.bodies.size()),
+      scale_(world.bodies.size(), 1) {}
+
+bool Passivity::watch_links(const World& world, const Contacts& contacts, const PairMethods& methods) {
+  std::fill(watched_.begin(), watched_.end(), false);
+  bool any = false;
+  for (std::size_t l = 0; l < link_watched_.size(); ++l) {
+    const bool touches = contacts.touches(l);
+    link_watched_[l] = methods.acting(l) != nullptr || (link_watched_[l] && touches);
+    if (!touches || !link_watched_[l]) continue;
+    watched_[world.links[l].first] = watched_[world.links[l].second] = true;
+    any = true;
+  }
+  return any;
+}
+
+void Passivity::bound(const World& world, const Contacts& contacts, const PairMethods& methods,
+                      const Response& response, const ExactResponse& exact, const Ledger& ledger) {
+  std::fill(scale_.begin(), scale_.end(), 1);
+  if (!watch_links(world, contacts, methods) || !world.parameters.passive_contacts) return;
+  const auto in_a_group = [&](std::size_t i) { return world.moves(world.bodies[i]) && !exact.solved(i); };
+  join_bodies(world.links, group_, [&](std::size_t l) {
+    return contacts.touches(l) && in_a_group(world.links[l].first) && in_a_group(world.links[l].second);
+  });
+  bound_groups(world, response, exact, ledger.contact());
+}
+
+void Passivity::bound_groups(const World& world, const Response& response, const ExactResponse& exact, double budget) {
+  std::fill(work_.begin(), work_.end(), ContactWork{});
+  for (std::size_t i = 0; i < group_.size(); ++i)
+    if (watched_[i]) watched_[group_[i]] = true;
+  for (std::size_t i = 0; i < group_.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!watched_[group_[i]] || !world.moves(body) || exact.solved(i)) continue;
+    work_[group_[i]] += world.is_implicit() ? contact_work_implicit(body.rigid, response.loads(i), world.dt)
+                                            : contact_work_semi_implicit(body.rigid, response.loads(i), world.dt);
+  }
+  for (std::size_t i = 0; i < group_.size(); ++i) {
+    if (group_[i] == i && watched_[i]) {
+      scale_[i] = passive_scale(std::max(0.0, budget), work_[i]);
+      budget -= work_[i].at(scale_[i]);
+    }
+    scale_[i] = scale_[group_[i]];
+  }
+}
+
+}  // namespace verisim

@@ -1,0 +1,302 @@
+"""The rules of ARCHITECTURE.md that can be read off the sources: who may include whom, and what never happens.
+
+Each rule is a function from {path: text} to a list of findings. A name is looked for wherever it stands, not only where
+it is called: an alias of it is then found where the alias is made. What a rule lets through is listed with its reason,
+and a row that is no longer needed is a finding too.
+"""
+
+import collections
+import posixpath
+import re
+
+from source_text import ROOT, code_of, declarations, functions, header_in, includes, line_of, without_comments
+
+# The dependency rule: what each folder may include and link besides itself. cli sees everything; what reads models
+# (geometry/cad) is a program of its own, which nobody includes.
+MAY_INCLUDE = {
+    "base": "",
+    "geometry": "base",
+    "geometry/cad": "base geometry",
+    "voxel": "base geometry",
+    "contact": "base geometry voxel",
+    "constraint": "base geometry",
+    "exact": "base geometry",
+    "dynamics": "base",
+    "device": "base",
+    "robot": "base",
+    "wii": "base",
+    "vrpn": "base",
+    "record": "base",
+    "reproduce": "base geometry record voxel constraint wii",
+    "simulation": "base geometry voxel contact constraint exact dynamics device robot wii record",
+    "script": "base geometry device robot wii record simulation",
+}
+
+# Each library has one home (path prefixes), so that a change of library is a change of one folder. A header that no
+# row knows is a finding: a new library gets its row first.
+EVERYWHERE = [""]
+HOME_OF_LIBRARY = {
+    r"[a-z_0-9]+": EVERYWHERE,  # C++'s own; the clock's and the random numbers' have rules of their own
+    r"Eigen/(Core|Geometry|LU|Cholesky|Eigenvalues)|fmt/(format|ranges)\.h": EVERYWHERE,
+    r"hdf5\.h": ["engine/record/"],
+    r"lua\.hpp": ["engine/script/"],
+    r"\w+\.hxx|assimp/.*": ["engine/geometry/cad/"],
+    r"CGAL/.*": ["engine/geometry/self_intersection.cpp", "engine/geometry/recover/flat_regions.cpp"],
+    r"fcl/.*": ["engine/contact/mesh_query.cpp", "engine/contact/broad_phase.cpp"],
+    r"hwy/(highway|foreach_target)\.h": ["engine/contact/", "engine/constraint/restore_batch.cpp"],
+    r"CLI/CLI\.hpp": ["engine/cli/"],
+    r"nlohmann/json\.hpp": ["engine/script/", "engine/cli/"],
+    r"sleef\.h|xxhash\.h|openssl/sha\.h": ["engine/base/"],
+    # The operating system's. Sockets: a network is vrpn's alone; the CAD child process is spoken to through a pair.
+    r"(netinet/(in|tcp)|arpa/inet|netdb)\.h": ["engine/vrpn/socket.cpp"],
+    r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp"],
+    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp"],
+    r"(unistd|fcntl|sys/(stat|mman|resource))\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp",
+                                                    "engine/geometry/cad/", "engine/record/", "engine/cli/"],
+    r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/"],
+    r"(pthread|sched|sys/utsname)\.h": ["engine/cli/"],
+}
+
+# What a folder's CMakeLists.txt may link besides the project's own: the libraries above, by the names CMake knows.
+HOME_OF_LINKED = {
+    "verisim_flags": EVERYWHERE, "Threads::Threads": EVERYWHERE,
+    "Eigen3::Eigen": ["engine/base"], "fmt::fmt": ["engine/base"], "sleef": ["engine/base"],
+    "OpenSSL::Crypto": ["engine/base"], "CGAL::CGAL": ["engine/geometry"],
+    "hwy::hwy": ["engine/contact", "engine/constraint"], "fcl": ["engine/contact"],
+    "${HDF5_C_LIBRARIES}": ["engine/record"], "nlohmann_json::nlohmann_json": ["engine/script", "engine/cli"],
+    "CLI11::CLI11": ["engine/cli"], "assimp::assimp": ["engine/geometry/cad"],
+    "${VERISIM_OCCT_TOOLKITS}": ["engine/geometry/cad"],
+}
+
+MAY_READ_THE_CLOCK = {
+    "engine/simulation/step.cpp": "times the stages of a frame",
+    "engine/constraint/recognition_table.cpp": "times recognition, as table 7.1 does",
+    "engine/reproduce/r5_blending.cpp": "times a solution of the comparator",
+    "engine/wii/validate.cpp": "times a tracker's update",
+    "engine/record/recorder.cpp": "waits for the disk",
+    "engine/geometry/cad_client.cpp": "ends a child process that takes too long",
+    "engine/cli/doctor.cpp": "measures the clock itself",
+    "engine/cli/stop_watch.hpp": "tells how long something took",
+    "engine/cli/run_loop.cpp": "paces a run and times its frames",
+    "engine/cli/wire_clock.cpp": "dates messages",
+}
+
+MAY_CALL_THE_C_LIBRARY = {
+    "engine/base/pinned_math.hpp": "the pinned functions themselves",
+    "engine/base/pinned_math.cpp": "the pinned functions themselves",
+    "engine/voxel/limits.cpp": "rounds a number in an error's text",
+    "engine/geometry/cad/extract.cpp": "the CAD kernel beside it calls them too; a run file holds what it gave",
+    "engine/geometry/cad/entities.cpp": "the CAD kernel beside it calls them too; a run file holds what it gave",
+}
+
+KEPT_FOR_TESTS = {  # functions of the engine's headers that nothing in the engine calls
+    "gap_at_end": "what the normal forces of a convex step belong to",
+    "body_count": "of a simulation",
+    "body_index": "of a simulation",
+    "radius_near": "of a recovered surface",
+}
+
+LINES_OF_A_FILE = 500
+LINES_OF_A_SCREEN = 60
+LONGER_THAN_A_SCREEN = {  # may become shorter, never longer
+    "engine/exact/trim.cpp: Trim::Trim": 93,
+    "engine/simulation/columns.cpp: Simulation::Implementation::make_schema": 63,
+}
+
+
+def folder_of(path):
+    """The folder of engine that a path or a project's header belongs to."""
+    parts = path.split("/")
+    return "geometry/cad" if parts[1:3] == ["geometry", "cad"] else parts[1]
+
+
+def is_at(path, homes):
+    return any(path.startswith(home) for home in homes)
+
+
+def seen(files, pattern, reason, text_of=code_of):
+    findings = []
+    for path, text in files.items():
+        text = text_of(text)
+        for match in re.finditer(pattern, text):
+            findings.append(f"{path}:{line_of(text, match.start())}: {match[0].strip()}: {reason}")
+    return findings
+
+
+def seen_outside(allowed, files, pattern, reason):
+    """As `seen` in the files that are not `allowed`; and those allowed that do not need to be."""
+    findings = seen({p: t for p, t in files.items() if p not in allowed}, pattern, reason)
+    for path in allowed:
+        if path in files and not seen({path: files[path]}, pattern, reason):
+            findings.append(f"{path} is let through for nothing: take away its row")
+    return findings
+
+
+def against_the_dependency_rule(files):
+    findings = []
+    for path, text in files.items():
+        folder = folder_of(path)
+        for include in includes(text):
+            header = header_in(include)
+            if not header.startswith("engine/"):
+                continue
+            wanted = folder_of(header)
+            if folder != "cli" and wanted not in [folder, *MAY_INCLUDE.get(folder, "").split()]:
+                findings.append(f"{path} includes {include}")
+    return findings
+
+
+def permissions_nobody_uses(files):
+    used = {(folder_of(p), folder_of(header_in(i)))
+            for p, text in files.items() for i in includes(text) if header_in(i).startswith("engine/")}
+    there = {folder for folder, _ in used}
+    return [f"MAY_INCLUDE lets {folder} include {other}; nothing there does"
+            for folder, others in MAY_INCLUDE.items() for other in others.split()
+            if folder in there and other in there and (folder, other) not in used]
+
+
+def oddly_spelled_includes(files):
+    """The other rules read includes: each has to say what it includes, by its whole path."""
+    findings = []
+    for path, text in files.items():
+        for include in includes(text):
+            header = header_in(include)
+            is_ours = header.split("/")[0] in ("engine", "tests", "bench", "scenarios")
+            if not include.startswith(('"', "<")):
+                findings.append(f"{path} includes what a macro says: {include}")
+            elif posixpath.normpath(header) != header or header.startswith(("/", "..")):
+                findings.append(f"{path} goes a way round: {include}")
+            elif is_ours and include.startswith("<"):
+                findings.append(f"{path} writes the project's own with brackets: {include}")
+            elif include.startswith('"') and not is_ours and not header.startswith("hwy/"):
+                findings.append(f"{path} leaves out the folder: {include}")
+            elif is_ours and path.startswith("engine/") and not header.startswith("engine/"):
+                findings.append(f"{path} includes what is not the engine's: {include}")
+        for own in re.findall(r'^[ \t]*#\s*define\b.*"([^"\n]*\.[ch]pp)"', without_comments(text), re.MULTILINE):
+            if own != path:
+                findings.append(f"{path} has a macro that names {own}")
+    return findings
+
+
+def libraries_away_from_home(files):
+    findings = []
+    for path, text in files.items():
+        for header in map(header_in, includes(text)):
+            known = [where for pattern, where in HOME_OF_LIBRARY.items() if re.fullmatch(pattern, header)]
+            homes = [home for where in known for home in where]
+            if not header.startswith("engine/") and not is_at(path, homes):
+                findings.append(f"{path} includes {header}; its home is {' or '.join(homes) or 'unknown'}")
+    return findings
+
+
+def links_against_the_dependency_rule(lists):
+    """`lists`: {path of a CMakeLists.txt: text}. What a folder links is what it may include."""
+    lists = {path: re.sub(r"#.*", "", text) for path, text in lists.items()}
+    call = r"\b(add_library|add_executable|target_link_libraries)\s*\(([^)]*)\)"
+    commands = [(posixpath.dirname(path), command, arguments.split())
+                for path, text in lists.items() for command, arguments in re.findall(call, text)]
+    owner = {arguments[0]: folder for folder, command, arguments in commands if command != "target_link_libraries"}
+    findings = []
+    for folder, command, arguments in commands:
+        if command != "target_link_libraries" or folder == "engine/cli":
+            continue
+        if owner.get(arguments[0]) != folder:
+            findings.append(f"{folder} links for {arguments[0]}, which is another's")
+        for linked in arguments[1:]:
+            if linked in ("PUBLIC", "PRIVATE", "INTERFACE"):
+                continue
+            if linked in owner:
+                allowed = [folder_of(folder), *MAY_INCLUDE[folder_of(folder)].split()]
+                is_allowed = folder_of(owner[linked]) in allowed
+            else:
+                is_allowed = folder in HOME_OF_LINKED.get(linked, []) or HOME_OF_LINKED.get(linked) == EVERYWHERE
+            if not is_allowed:
+                findings.append(f"{folder} links {linked}")
+    for path, text in lists.items():
+        for word in re.findall(r"\b(?:link_libraries|link_directories|target_link_options)\s*\(|-l\w+", text):
+            if not re.search(r"target_link_libraries", word):
+                findings.append(f"{path}: {word}: links stand in target_link_libraries")
+    return findings
+
+
+CLOCK = "|".join([
+    r"\bchrono\b", r"\b(?:steady|system|high_resolution|file|utc|tai|gps|local)_clock\b", r"\bnow\s*\(",
+    r"<\s*(?:ctime|time\.h|sys/times?\.h|sys/timeb\.h|omp\.h|x86intrin\.h|immintrin\.h)\s*>",
+    r"\b(?:clock_(?:gettime|getres|nanosleep)|timespec_get|gettimeofday|getrusage|asctime)\b",
+    r"\b(?:local|gm|c|mk)time(?:_r)?\b",
+    r"\b(?:strftime|difftime|omp_get_w(?:time|tick)|last_write_time|timerfd?_create|setitimer)\b", r"rdtsc",
+    r"\b__builtin_readcyclecounter\b", r"\bstd\s*::\s*(?:time|clock)\b", r"(?<!\w)::\s*(?:time|clock)\b",
+    r"(?<![\w.>:])time\s*\(\s*(?:nullptr|NULL|0|&)", r"(?<![\w.>:])clock\s*\(\s*\)(?!\s*const)",
+])
+
+
+def clocks(files):
+    return seen_outside(MAY_READ_THE_CLOCK, files, CLOCK, "simulated time only; few places measure the wall clock")
+
+
+RANDOM = "|".join([
+    r"<\s*random\s*>", r"\b(?:mt19937|minstd_rand|ranlux|knuth_b|default_random_engine|random_device|seed_seq)\w*",
+    r"\b\w+_(?:distribution|engine)\b",
+    r"(?<![\w.>:])(?:s?rand(?:_r)?\s*\(|random\s*\(\s*\)(?!\s*(?:const|override|=)))",
+    r"\bstd\s*::\s*(?:s?rand|shuffle|sample|random_shuffle)\b", r"(?<!\w)::\s*s?rand(?:om)?\b", r"\b[delmnj]rand48\b",
+    r"\bsrand48\b", r"\b(?:getrandom|getentropy|arc4random\w*|RAND_(?:priv_)?bytes)\b", r"rdrand|rdseed",
+    r"::\s*Random\s*\(", r"\bsetRandom\s*\(",
+])
+
+
+def random_numbers(files):
+    reason = "engine/base/random.hpp gives the same numbers everywhere"
+    return seen(files, RANDOM, reason) + seen(files, r"/dev/u?random", reason, without_comments)
+
+
+FUNCTIONS = (r"(?:a?(?:sin|cos|tan)h?|atan2|sincos|exp(?:2|10|m1)?|log(?:2|10|1p)?|pow|cbrt|hypot|[lt]gamma|erfc?|beta"
+             r"|riemann_zeta|cyl_\w+|sph_\w+|(?:assoc_)?l(?:egendre|aguerre)|hermite|(?:comp_)?ellint_\d)")
+UNPINNED = "|".join([
+    rf"\bstd\s*::\s*{FUNCTIONS}[fl]?\b", rf"(?<!\w)::\s*{FUNCTIONS}[fl]?\b",
+    rf"\bnumext\s*::\s*\w*{FUNCTIONS}\b", rf"__builtin_{FUNCTIONS}[fl]?\b",
+    rf"(?<![\w:])(?<!:: ){FUNCTIONS}[fl]?\s*\(", r"\busing\s+namespace\s+(?:std|pinned)\b",
+    r"<\s*(?:complex|valarray)\s*>",
+    r"\bstd\s*::\s*(?:complex|polar|arg|valarray|pow)\b",
+    # Eigen's, that call the C library underneath.
+    r"\bAngleAxis[fd]?\b", r"\bRotation2D[fd]?\b", r"[.>]\s*slerp\s*\(", r"\b(?:canonicalE|e)ulerAngles\s*\(",
+    r"\bangularDistance\s*\(", r"\bcomputeDirect\s*\(", r"[.>]\s*arg\s*\(",
+    r"<\s*unsupported/",
+])
+
+
+def unpinned_functions(files):
+    return seen_outside(MAY_CALL_THE_C_LIBRARY, files, UNPINNED,
+                        "engine/base/pinned_math.hpp gives the same bits on every CPU")
+
+
+def functions_nobody_calls(files):
+    """Functions of headers whose name stands nowhere but where they are declared and defined."""
+    words, declared, homes = collections.Counter(), collections.Counter(), {}
+    for path, text in files.items():
+        words.update(re.findall(r"\w+", code_of(text)))
+        names = declarations(text)
+        declared.update(names)
+        if path.endswith(".hpp"):
+            homes.update((name, path) for name in names)
+    dead = {name: path for name, path in homes.items() if words[name] <= declared[name]}
+    kept_for_nothing = [name for name in KEPT_FOR_TESTS if name in words and name not in dead]
+    return [f"{path}: nothing calls {name}" for name, path in dead.items() if name not in KEPT_FOR_TESTS] + [
+        f"{name} is called now: take away its row" for name in kept_for_nothing]
+
+
+def long_files(files):
+    return [f"{path} has {n} lines" for path, text in files.items() if (n := len(text.splitlines())) > LINES_OF_A_FILE]
+
+
+def long_functions(files):
+    findings, there = [], set()
+    for path, text in files.items():
+        for name, lines in functions(text):
+            row = f"{path}: {name}"
+            allowed = LONGER_THAN_A_SCREEN.get(row, LINES_OF_A_SCREEN)
+            if lines > LINES_OF_A_SCREEN:
+                there.add(row)
+            if lines > allowed:
+                findings.append(f"{row} has {lines} lines, more than {allowed}")
+    return findings + [f"{row} is no longer than a screen: take away its row"
+                       for row in LONGER_THAN_A_SCREEN if row.split(":")[0] in files and row not in there]
