@@ -1,19 +1,40 @@
-# verisim_test(NAME [LINKS targets...]): builds tests/<folder>/NAME.cpp and registers each of its cases with ctest.
+# verisim_test(NAME [ALONE] [LINKS targets...] [SOURCES files...]): tests/<folder>/NAME.cpp becomes part of the folder's test
+# program, build/tests/<folder>_tests, and ctest knows each of its cases as NAME.Suite.Case. One program per folder, because
+# linking and reading the same headers for every file cost more than compiling the tests. Each file has a namespace of its
+# own name, so that files do not see each other. ALONE: a program of its own, for what replaces malloc or kills itself.
 find_package(GTest REQUIRED)
-include(GoogleTest)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(VERISIM_SHARED_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "Recordings and models of other people; tests that need them say when they are absent")
 set(VERISIM_SHARED_REFERENCE "${PROJECT_SOURCE_DIR}/../shared/reference" CACHE PATH "Recorded facts of published pieces")
-function(verisim_test name)
-  cmake_parse_arguments(ARG "" "" "LINKS;SOURCES" ${ARGN})
-  add_executable(${name} ${name}.cpp ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_LINKS} verisim_flags GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE VERISIM_SHARED_DATA="${VERISIM_SHARED_DATA}"
+
+function(verisim_test_program target)
+  add_executable(${target})
+  target_link_libraries(${target} PRIVATE verisim_flags GTest::gtest_main)
+  target_compile_definitions(${target} PRIVATE VERISIM_SHARED_DATA="${VERISIM_SHARED_DATA}"
                              VERISIM_SHARED_REFERENCE="${VERISIM_SHARED_REFERENCE}" VERISIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              VERISIM_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)
+  add_custom_command(TARGET ${target} POST_BUILD VERBATIM
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list})
+  file(WRITE ${list}.include "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n"
+                             "  add_test(${target}_NOT_BUILT ${target}_NOT_BUILT)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${list}.include)
+endfunction()
+
+function(verisim_test name)
+  cmake_parse_arguments(ARG "ALONE" "" "LINKS;SOURCES" ${ARGN})
+  get_filename_component(folder ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  set(target ${folder}_tests)
+  if(ARG_ALONE)
+    set(target ${name})
+  endif()
+  if(NOT TARGET ${target})
+    verisim_test_program(${target})
+  endif()
+  target_sources(${target} PRIVATE ${name}.cpp ${ARG_SOURCES})  # CMake compiles a file once that is named twice
   if(ARG_SOURCES)  # allocations.cpp and its like replace operator new, whose users must not see it
     set_source_files_properties(${ARG_SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
-  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
-                       PROPERTIES TIMEOUT 600)
+  target_link_libraries(${target} PRIVATE ${ARG_LINKS})
 endfunction()

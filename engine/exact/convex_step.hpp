@@ -46,9 +46,8 @@ class ConvexStep {
   /// @pre both are numbers from add_body or kFixed, and not the same
   void add_rows(std::span<const ContactRow> rows, int first, int second);
 
-  /// @pre dt is finite and above 0
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
-  /// 20 rows that act.
+  /// 20 rows that act. @pre dt is finite and above 0
   int solve(double dt);
 
   /// @pre body is a number from add_body, here and below

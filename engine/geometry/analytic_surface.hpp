@@ -21,6 +21,7 @@
 // engine/voxel/trim.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -35,8 +36,7 @@ namespace verisim {
 /// meant.
 enum class SurfaceKind : std::uint8_t { plane, cylinder, cone, sphere, torus };
 
-// --- in the half plane of a meridian
-// ----------------------------------------------------------------------------------
+// --- in the half plane of a meridian --------------------------------------------------------------------------------
 
 /// The distance of a place (rho, h) and its gradient there, (out, up) / length by rho and h: left undivided, for who
 /// needs a vector of three divides once.
@@ -69,8 +69,7 @@ struct Meridian {
   [[nodiscard]] double parameter(double rho, double h) const;
 };
 
-// --- in space
-// ---------------------------------------------------------------------------------------------------------
+// --- in space -------------------------------------------------------------------------------------------------------
 
 /// A point seen from an axis.
 struct Profile {
@@ -145,8 +144,7 @@ class AnalyticSurface {
 /// 0 to 4 once around: grows with the angle of (x, y) from the x axis, needs no trigonometry. 0 at the origin.
 [[nodiscard]] double turn_of(double x, double y);
 
-// --- inline: asked in the loops of exact contacts, association and recovery
-// -------------------------------------------
+// --- inline: asked in the loops of exact contacts, association and recovery -----------------------------------------
 
 inline double Meridian::distance(double rho, double h) const {
   switch (kind) {
@@ -213,6 +211,9 @@ inline Profile profile_of(const Vector3d& p, const Vector3d& point, const Vector
 inline SurfaceAt AnalyticSurface::at(const Vector3d& p) const {
   if (meridian_.kind == SurfaceKind::plane) return {(p - point_).dot(axis_), axis_};
   const Profile f = profile(p);
+  if (meridian_.kind == SurfaceKind::cylinder) {  // most faces that are round: no combination, no division
+    return {side_ * meridian_.distance(f.rho, f.height), side_ * f.outward};
+  }
   const MeridianAt m = meridian_.at(f.rho, f.height);
   return {side_ * m.distance, side_ / m.length * (m.out * f.outward + m.up * axis_)};
 }

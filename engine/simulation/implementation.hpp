@@ -15,8 +15,8 @@ struct Simulation::Implementation {
         stages(scene, world, events),
         recording(world, stages, cost) {}
 
+  std::vector<Event> events;  ///< first: making the world adds some
   World world;
-  std::vector<Event> events;
   FrameCost cost;
   Stages stages;
   Recording recording;

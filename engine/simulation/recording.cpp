@@ -59,7 +59,7 @@ void declare_link(const World& world, const Stages& stages, std::size_t l, Colum
 }
 
 std::array<double, 8> balance_of(const EnergyBook& book) {
-  const EnergyState& e = book.now();
+  const EnergyState& e = book.state();
   const Ledger& l = book.ledger();
   return {e.kinetic, e.coupling, e.gravity, l.dissipated(), l.contact(), l.numerical(), l.input(), l.residual(e)};
 }

@@ -124,7 +124,7 @@ void Simulation::write_row(std::byte* row) const {
 
 Simulation::Energy Simulation::energy() const {
   const Ledger& l = implementation_->stages.energy.ledger();
-  const EnergyState& e = implementation_->stages.energy.now();
+  const EnergyState& e = implementation_->stages.energy.state();
   return {e.kinetic, e.coupling, e.gravity, l.dissipated(), l.contact(), l.input(), l.numerical(), l.residual(e)};
 }
 

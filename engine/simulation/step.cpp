@@ -34,7 +34,7 @@ class StageTimer {
 }  // namespace
 
 void Simulation::step() {
-  auto& [world, events, cost, s, recording, left_out, stage_ns] = *implementation_;
+  auto& [events, world, cost, s, recording, left_out, stage_ns] = *implementation_;
   StageTimer timer(stage_ns);
   cost = FrameCost();
   s.grasping.sample(world);  // raw pose -> virtual handle

@@ -121,22 +121,24 @@ void DeclaredFeatures::extend(std::size_t face, std::span<const Place> set, cons
   };
   const auto widen = [&](std::array<double, 2>& range, double at) { include(range, at - half_side, at + half_side); };
   constexpr std::array<double, 2> kAround = {0, 2 * pinned::kPi};
-  const auto along = [](const auto& s, const Vector3d& q) { return (q - s.point).dot(s.direction); };
-  std::visit(Overloaded{[&](const Plane& s) {
-                          widen(f.u_range, (p - s.point).dot(s.x_axis));
-                          widen(f.v_range, (p - s.point).dot(s.normal.cross(s.x_axis)));
+  const AnalyticSurface surface = *AnalyticSurface::from(f.surface);
+  const double u = surface.parameters(p)[0], v = surface.parameters(p)[1];
+  std::visit(Overloaded{[&](const Plane&) {
+                          widen(f.u_range, u);
+                          widen(f.v_range, v);
                         },
                         [&](const Cylinder& s) {
                           f.u_range = kAround;
                           if (const Circle* rim = rim_of(s, set)) {
-                            include(f.v_range, along(s, rim->center), along(s, rim->center));
+                            const double end = surface.parameters(rim->center)[1];
+                            include(f.v_range, end, end);
                           } else {
-                            widen(f.v_range, along(s, p));
+                            widen(f.v_range, v);
                           }
                         },
-                        [&](const Cone& s) {
+                        [&](const Cone&) {
                           f.u_range = kAround;
-                          widen(f.v_range, along(s, p));
+                          widen(f.v_range, v);
                         },
                         [&](const Sphere&) {
                           f.u_range = kAround;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace verisim {
+namespace verisim::contract_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -50,4 +50,4 @@ TEST(Contract, WhatAscendsHasNoEqualNeighbours) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::contract_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace verisim {
+namespace verisim::error_test {
 namespace {
 
 // The exit codes are promised to users (INTERFACES section 1).
@@ -50,4 +50,4 @@ TEST(NearestName, TakesTheFirstOfEquallyNearNames) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::error_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace verisim {
+namespace verisim::hash_test {
 namespace {
 
 // FIPS 180-4 examples and the digest of nothing.
@@ -40,4 +40,4 @@ TEST(ToHex, WritesSixteenLowerCaseDigits) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::hash_test

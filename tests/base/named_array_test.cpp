@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace verisim {
+namespace verisim::named_array_test {
 namespace {
 
 template <typename T>
@@ -54,4 +54,4 @@ TEST(NamedArrayDeathTest, IsNotMadeWithAShapeOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::named_array_test

@@ -9,7 +9,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::pinned_math_test {
 namespace {
 
 using test::Inputs;
@@ -90,4 +90,4 @@ TEST(PinnedMath, KeepsItsBits) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::pinned_math_test

@@ -8,7 +8,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::pose_test {
 namespace {
 
 using pinned::kPi;
@@ -138,4 +138,4 @@ TEST(Wrench, AddsAndTurnsRound) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::pose_test

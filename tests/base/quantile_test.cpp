@@ -7,7 +7,7 @@
 
 #include "tests/support/random_inputs.hpp"
 
-namespace verisim {
+namespace verisim::quantile_test {
 namespace {
 
 template <typename T>
@@ -70,4 +70,4 @@ TEST(QuantileDeathTest, OfNothingIsABrokenPromise) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::quantile_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::random_test {
 namespace {
 
 using test::tolerance;
@@ -95,4 +95,4 @@ TEST(RandomStream, NormalHasTheMomentsOfTheStandardNormal) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::random_test

@@ -3,7 +3,7 @@
 
 #include "engine/constraint/recognizers.hpp"
 
-namespace verisim {
+namespace verisim::add_a_pair_test {
 
 // Step 1: one struct (in the engine: recognize/ellipse_ellipse.hpp).
 struct EllipseEllipse {
@@ -84,4 +84,4 @@ TEST(AddingAPair, IsNotKnownToTheEngineWithoutTheList) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::add_a_pair_test

@@ -13,7 +13,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::alignment_test {
 namespace {
 
 using test::circle;
@@ -237,4 +237,4 @@ TEST(Alignment, IsZeroForAPoseThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::alignment_test

@@ -11,7 +11,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::blend_test {
 namespace {
 
 using test::cylinder;
@@ -113,4 +113,4 @@ TEST(ConstraintForce, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::blend_test

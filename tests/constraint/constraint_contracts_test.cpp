@@ -11,7 +11,7 @@
 #include "tests/constraint/parts.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim {
+namespace verisim::constraint_contracts_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -158,4 +158,4 @@ TEST(RegressionDeathTest, NeedsPairsOfFiniteNumbersThatDiffer) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::constraint_contracts_test

@@ -12,7 +12,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::constraint_link_test {
 namespace {
 
 namespace block = test::block_set;
@@ -296,4 +296,4 @@ TEST(ConstraintLink, ChangesForcesContinuouslyAtTheRim) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::constraint_link_test

@@ -10,7 +10,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace verisim {
+namespace verisim::memo_test {
 namespace {
 
 namespace block = test::block_set;
@@ -234,4 +234,4 @@ TEST(EntitySets, OfNothingHoldsTheEmptySet) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::memo_test

@@ -8,7 +8,7 @@
 #include "tests/contact/allocations.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::recognition_table_test {
 namespace {
 
 using test::tolerance;
@@ -46,4 +46,4 @@ TEST(RecognitionTable, HoldsEveryChoiceOfTheSixRecognizers) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recognition_table_test

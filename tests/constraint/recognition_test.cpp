@@ -12,7 +12,7 @@
 #include "tests/contact/allocations.hpp"
 #include "tests/support/random_inputs.hpp"
 
-namespace verisim {
+namespace verisim::recognition_test {
 namespace {
 
 using test::circle;
@@ -188,4 +188,4 @@ TEST(Recognition, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recognition_test

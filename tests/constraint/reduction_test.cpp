@@ -6,7 +6,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::reduction_test {
 namespace {
 
 using test::tolerance;
@@ -106,4 +106,4 @@ TEST(CommonFreedom, IsContinuousInNormalsAndForces) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::reduction_test

@@ -8,7 +8,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::restoration_test {
 namespace {
 
 using test::Inputs;
@@ -110,4 +110,4 @@ TEST(RestoreConical, KeepsTheSeatAndFreesTheWayOut) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::restoration_test

@@ -8,7 +8,7 @@
 #include "tests/contact/naive_voxels.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim {
+namespace verisim::contact_contracts_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -128,4 +128,4 @@ TEST(MeshTreeDeathTest, HoldsTrianglesOfFiniteCorners) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::contact_contracts_test

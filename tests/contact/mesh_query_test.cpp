@@ -5,7 +5,7 @@
 
 #include "tests/voxel/shapes.hpp"
 
-namespace verisim {
+namespace verisim::mesh_query_test {
 namespace {
 
 ContactList contacts_of(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_AB,
@@ -101,4 +101,4 @@ TEST(MeshQuery, LeavesOutTrianglesWithoutArea) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::mesh_query_test

@@ -8,7 +8,7 @@
 #include "engine/base/random.hpp"
 #include "tests/contact/allocations.hpp"
 
-namespace verisim {
+namespace verisim::penalty_test {
 namespace {
 
 struct RestoreTargets {
@@ -210,4 +210,4 @@ TEST(Penalty, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::penalty_test

@@ -11,7 +11,7 @@
 #include "tests/contact/naive_voxels.hpp"
 #include "tests/contact/query_plainly.hpp"
 
-namespace verisim {
+namespace verisim::query_test {
 namespace {
 
 constexpr double kVoxel = 0.005;
@@ -274,4 +274,4 @@ TEST(SimdTargets, EndWithScalarAndRefuseAnUnknownName) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::query_test

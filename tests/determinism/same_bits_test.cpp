@@ -8,7 +8,7 @@
 #include "engine/contact/query.hpp"
 #include "tests/determinism/core_scenes.hpp"
 
-namespace verisim::determinism {
+namespace verisim::determinism::same_bits_test {
 namespace {
 
 /// Restores free dispatch when a test ends.
@@ -68,4 +68,4 @@ TEST(SameBits, OneBitOfTheInputIsSeen) {
 }
 
 }  // namespace
-}  // namespace verisim::determinism
+}  // namespace verisim::determinism::same_bits_test

@@ -9,7 +9,7 @@
 #include "tests/support/broken.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace verisim {
+namespace verisim::device_contracts_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -44,4 +44,4 @@ TEST(Hardware, RefusesAHomeThatIsNoPlacement) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::device_contracts_test

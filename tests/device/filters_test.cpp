@@ -8,7 +8,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::filters_test {
 namespace {
 
 using test::expect_refused;
@@ -82,4 +82,4 @@ TEST(Filters, RefuseNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::filters_test

@@ -9,7 +9,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::hand_test {
 namespace {
 
 using pinned::kPi;
@@ -307,4 +307,4 @@ TEST(Hand, RefusesADescriptionThatIsNone) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::hand_test

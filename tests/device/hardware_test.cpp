@@ -10,7 +10,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::hardware_test {
 namespace {
 
 using test::expect_refused;
@@ -127,4 +127,4 @@ TEST(Hardware, RefusesADescriptionThatIsNone) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::hardware_test

@@ -9,7 +9,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::replay_test {
 namespace {
 
 using test::expect_refused;
@@ -134,4 +134,4 @@ TEST(ReplayDeathTest, NeedsAPoseAndAButtonForEverySample) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::replay_test

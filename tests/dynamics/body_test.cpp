@@ -9,7 +9,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::body_test {
 namespace {
 
 using test::brick;
@@ -129,4 +129,4 @@ TEST(SquareRoot, SquaredIsTheMatrix) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::body_test

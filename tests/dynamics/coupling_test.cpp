@@ -9,7 +9,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::coupling_test {
 namespace {
 
 using test::brick;
@@ -160,4 +160,4 @@ TEST(CouplingForce, DoesNotDependOnTheWorldsAxes) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::coupling_test

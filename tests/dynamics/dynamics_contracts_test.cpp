@@ -7,7 +7,7 @@
 #include "tests/support/bodies.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim {
+namespace verisim::dynamics_contracts_test {
 namespace {
 
 using test::brick;
@@ -146,4 +146,4 @@ TEST(PassiveScale, IsZeroForWorkBeyondDoublePrecision) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::dynamics_contracts_test

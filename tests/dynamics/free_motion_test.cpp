@@ -9,7 +9,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::free_motion_test {
 namespace {
 
 using test::angular_momentum;
@@ -111,4 +111,4 @@ TEST_P(FreeMotion, ANeedleSpinningFastNeverBlowsUp) {
 INSTANTIATE_TEST_SUITE_P(BothIntegrators, FreeMotion, testing::Values(step_semi_implicit, step_implicit));
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::free_motion_test

@@ -9,7 +9,7 @@
 #include "tests/support/bodies.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::implicit_contact_test {
 namespace {
 
 using test::brick;
@@ -142,4 +142,4 @@ TEST(ImplicitContact, DoesNotDependOnTheUnitOfLength) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::implicit_contact_test

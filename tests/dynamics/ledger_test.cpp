@@ -10,7 +10,7 @@
 #include "tests/support/bodies.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::ledger_test {
 namespace {
 
 using test::brick;
@@ -242,4 +242,4 @@ TEST(Ledger, StartResetsIt) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::ledger_test

@@ -9,7 +9,7 @@
 #include "tests/support/bodies.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::passive_contact_test {
 namespace {
 
 using test::brick;
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(BothIntegrators, PassiveContact,
                                          Method{contact_work_implicit, step_implicit}));
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::passive_contact_test

@@ -6,7 +6,7 @@
 #include "tests/exact/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::convex_step_test {
 namespace {
 
 using verisim::test::tolerance;
@@ -186,4 +186,4 @@ TEST(ConvexStep, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::convex_step_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::driven_insertion_test {
 namespace {
 
 struct Case {
@@ -53,4 +53,4 @@ TEST_P(DrivenInsertion, DoesNotDependOnTheTessellation) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::driven_insertion_test

@@ -7,7 +7,7 @@
 #include "engine/exact/exact_link.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim::exact {
+namespace verisim::exact::exact_contracts_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -99,4 +99,4 @@ TEST(ConvexStepDeathTest, IsOfBodiesWithInertiaAndRowsBetweenThem) {
 }
 
 }  // namespace
-}  // namespace verisim::exact
+}  // namespace verisim::exact::exact_contracts_test

@@ -4,7 +4,7 @@
 
 #include "tests/exact/scenes.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::exact_link_test {
 namespace {
 
 using Kind = Solid::Kind;
@@ -245,4 +245,4 @@ TEST(GrooveInARing, IsNotReachedThroughTheRing) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::exact_link_test

@@ -6,7 +6,7 @@
 #include "tests/exact/scenes.hpp"
 #include "tests/exact/seated_cone.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::exact_thresholds_test {
 namespace {
 
 constexpr double kClearance = 1e-4;
@@ -135,4 +135,4 @@ TEST_P(ExactThresholds, HardlyChangeHowAConeSits) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::exact_thresholds_test

@@ -3,7 +3,7 @@
 #include "engine/base/pinned_math.hpp"
 #include "tests/exact/held_pin.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::free_spin_test {
 namespace {
 
 /// Wrench on the pin, moved by hand into a pose and held there: 100 kg, so that nothing gives.
@@ -41,4 +41,4 @@ TEST(PinAgainstTheWall, TurnsAndSlidesFreely) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::free_spin_test

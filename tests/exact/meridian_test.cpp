@@ -5,7 +5,7 @@
 
 #include "tests/geometry/surface_sorts.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::meridian_test {
 namespace {
 
 class EverySurface : public ::testing::TestWithParam<testing::SurfaceSort> {};
@@ -47,4 +47,4 @@ TEST_P(EverySurface, MeasuresACurveAsThePointsOnItTell) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::meridian_test

@@ -5,7 +5,7 @@
 
 #include "tests/exact/scenes.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::round_sides_test {
 namespace {
 
 using Kind = Solid::Kind;
@@ -102,4 +102,4 @@ TEST_P(RoundSides, ThatLieAlongEachOtherTouchAllAlong) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::round_sides_test

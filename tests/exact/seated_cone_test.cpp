@@ -4,7 +4,7 @@
 
 #include "tests/support/tolerance.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::seated_cone_test {
 namespace {
 
 using verisim::test::tolerance;
@@ -38,4 +38,4 @@ TEST(SeatedCone, SearchesHardlyMoreSamplesThanTouch) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::seated_cone_test

@@ -5,7 +5,7 @@
 #include "engine/exact/convex_step.hpp"
 #include "tests/exact/scenes.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::straight_step_test {
 namespace {
 
 using Kind = Solid::Kind;
@@ -88,4 +88,4 @@ TEST(StraightStep, OfATurningTubeEndsAsDeepAsAStraightLineBesideBothCircles) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::straight_step_test

@@ -3,7 +3,7 @@
 #include "tests/exact/held_pin.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::tilt_test {
 namespace {
 
 using verisim::test::tolerance;
@@ -42,4 +42,4 @@ TEST_P(TwoPointContact, StopsThePinAtTheFormulasTilt) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::tilt_test

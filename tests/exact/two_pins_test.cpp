@@ -5,7 +5,7 @@
 #include "tests/exact/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim::exact::test {
+namespace verisim::exact::test::two_pins_test {
 namespace {
 
 using Kind = Solid::Kind;
@@ -131,4 +131,4 @@ TEST(PlateWithTwoPins, IsMovedAsItsMomentumSays) {
 }
 
 }  // namespace
-}  // namespace verisim::exact::test
+}  // namespace verisim::exact::test::two_pins_test

@@ -5,7 +5,7 @@
 
 #include "tests/geometry/surface_sorts.hpp"
 
-namespace verisim::testing {
+namespace verisim::testing::analytic_surface_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -265,4 +265,4 @@ TEST(Meridian, TakesTheSignsThatFitsHave) {
 }
 
 }  // namespace
-}  // namespace verisim::testing
+}  // namespace verisim::testing::analytic_surface_test

@@ -9,7 +9,7 @@
 
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::cad_client_test {
 namespace {
 
 using testing::error_of;
@@ -108,4 +108,4 @@ TEST(Message, CarriesSolidsWithoutLoss) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::cad_client_test

@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-namespace verisim {
+namespace verisim::entity_check_test {
 namespace {
 
 const Vector3d kO = Vector3d::Zero(), kX = Vector3d::UnitX(), kZ = Vector3d::UnitZ();
@@ -144,4 +144,4 @@ TEST(FaultOf, LeavesOtherKindsAndSpindlesInPeace) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::entity_check_test

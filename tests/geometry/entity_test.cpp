@@ -5,7 +5,7 @@
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/parametrization.hpp"
 
-namespace verisim {
+namespace verisim::entity_test {
 namespace {
 
 using testing::make;
@@ -192,4 +192,4 @@ TEST(HoleFlag, TellsABoreFromAPin) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::entity_test

@@ -9,7 +9,7 @@
 #include "tests/geometry/models.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim {
+namespace verisim::geometry_contracts_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -100,4 +100,4 @@ TEST(CadDeathTest, IsToldWholeSolidsAndHowLongItMayTake) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::geometry_contracts_test

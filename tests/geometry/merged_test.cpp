@@ -6,7 +6,7 @@
 #include "engine/base/pose.hpp"
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::merged_test {
 namespace {
 
 /// A box with its six planes as faces, two triangles each, and one edge between the first two.
@@ -101,4 +101,4 @@ TEST(Merged, OfMeshesAloneHasNoFaces) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::merged_test

@@ -7,7 +7,7 @@
 #include "engine/geometry/write_file.hpp"
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::mesh_file_test {
 namespace {
 
 using testing::box_mesh;
@@ -263,4 +263,4 @@ TEST(WriteFile, SaysWhenItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::mesh_file_test

@@ -6,7 +6,7 @@
 #include "engine/base/random.hpp"
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::mesh_joints_test {
 namespace {
 
 using testing::append;
@@ -150,4 +150,4 @@ TEST(ClosedMesh, KeepsDetailsBelowTheTolerance) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::mesh_joints_test

@@ -6,7 +6,7 @@
 #include "tests/geometry/models.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace verisim {
+namespace verisim::mesh_test {
 namespace {
 
 using testing::append;
@@ -270,4 +270,4 @@ TEST(Repair, CopesWithAMeshOfNothing) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::mesh_test

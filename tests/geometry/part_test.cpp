@@ -2,7 +2,7 @@
 
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::part_test {
 namespace {
 
 using testing::error_of;
@@ -136,4 +136,4 @@ TEST(Questions, AreNotAskedAboutUsualParts) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::part_test

@@ -6,7 +6,7 @@
 
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::recorded_models_test {
 namespace {
 
 using Counts = std::map<std::string, int>;
@@ -282,4 +282,4 @@ TEST(Meshes, WithAHoleHaveTheVolumeOfTheBlockWithoutIt) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recorded_models_test

@@ -8,7 +8,7 @@
 #include "tests/geometry/recovered.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace verisim {
+namespace verisim::recover_damage_test {
 namespace {
 
 class Damage {
@@ -166,4 +166,4 @@ TEST(RecoverDamaged, CallsFreeFormsOther) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recover_damage_test

@@ -10,7 +10,7 @@
 #include "tests/geometry/parametrization.hpp"
 #include "tests/geometry/recovered.hpp"
 
-namespace verisim {
+namespace verisim::recover_test {
 namespace {
 
 using testing::bare;
@@ -358,4 +358,4 @@ TEST_F(RecoverModels, FindsPegsAndHolesWrittenWithSixDecimals) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recover_test

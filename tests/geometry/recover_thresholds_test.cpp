@@ -6,7 +6,7 @@
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/recovered.hpp"
 
-namespace verisim {
+namespace verisim::recover_thresholds_test {
 namespace {
 
 using testing::make;
@@ -121,4 +121,4 @@ TEST(RecoverStep, DecidesWhatARoundSurfaceMayBeMadeOf) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recover_thresholds_test

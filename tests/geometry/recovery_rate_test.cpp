@@ -11,7 +11,7 @@
 #include "tests/geometry/parametrization.hpp"
 #include "tests/geometry/recovered.hpp"
 
-namespace verisim {
+namespace verisim::recover_share_test::recovery_rate_test {
 namespace {
 
 bool near(double found, double drawn) {
@@ -159,4 +159,4 @@ TEST_F(RecoveryRate, OfCoarseTessellationsIsNoLess) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recover_share_test::recovery_rate_test

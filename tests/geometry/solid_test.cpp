@@ -4,7 +4,7 @@
 
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::solid_test {
 namespace {
 
 using testing::error_of;
@@ -182,4 +182,4 @@ TEST(Text, IsEqualForEqualSolidsAndDiffersForOthers) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::solid_test

@@ -3,7 +3,7 @@
 
 #include "tests/geometry/models.hpp"
 
-namespace verisim {
+namespace verisim::step_file_test {
 namespace {
 
 using testing::error_of;
@@ -92,4 +92,4 @@ TEST_F(Step, OfASolidThatIsNoneIsRefusedBeforeAnythingIsStarted) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::step_file_test

@@ -5,7 +5,7 @@
 
 #include "tests/geometry/surface_sorts.hpp"
 
-namespace verisim::recover {
+namespace verisim::recover::surface_value_test {
 namespace {
 
 /// One of each kind, a cone that narrows and a tube beyond its axis.
@@ -74,4 +74,4 @@ TEST(SurfaceValue, IsAsFarAwayAsTheSurfaceThatItBecomes) {
 }
 
 }  // namespace
-}  // namespace verisim::recover
+}  // namespace verisim::recover::surface_value_test

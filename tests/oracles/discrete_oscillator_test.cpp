@@ -10,7 +10,7 @@
 #include "tests/support/bodies.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::discrete_oscillator_test {
 namespace {
 
 using test::brick;
@@ -110,4 +110,4 @@ TEST(SeriesSpring, FeelsLikeTheWorkedNumber) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::discrete_oscillator_test

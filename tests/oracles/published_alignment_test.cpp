@@ -11,7 +11,7 @@
 #include "tests/constraint/shapes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::published_alignment_test {
 namespace {
 
 using test::cylinder;
@@ -63,4 +63,4 @@ TEST(AlignmentPavlik, ForgivesAxesThatMeetFarAway) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::published_alignment_test

@@ -4,7 +4,7 @@
 #include "engine/constraint/recognition_table.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::recognition_times_test {
 namespace {
 
 using test::tolerance;
@@ -18,4 +18,4 @@ TEST(PublishedRecognitionRows, GiveThePublishedRegressions) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recognition_times_test

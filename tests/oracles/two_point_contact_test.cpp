@@ -8,7 +8,7 @@
 #include "tests/exact/scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::two_point_contact_test {
 namespace {
 
 using test::tolerance;
@@ -59,4 +59,4 @@ TEST_P(TwoPointContact, IsWhereAlignmentPerTypeBeginsToFall) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::two_point_contact_test

@@ -11,7 +11,7 @@
 #include "engine/base/pinned_math.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::virtual_wall_test {
 namespace {
 
 using test::tolerance;
@@ -135,4 +135,4 @@ TEST(SampledWall, MayBeStableWithoutBeingPassive) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::virtual_wall_test

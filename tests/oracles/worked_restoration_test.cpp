@@ -5,7 +5,7 @@
 
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::worked_restoration_test {
 namespace {
 
 using test::tolerance;
@@ -63,4 +63,4 @@ TEST(RestoreCylindrical, GivesTheWorkedNumberForARecognizedPin) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::worked_restoration_test

@@ -8,7 +8,7 @@
 #include "engine/record/trace.hpp"
 #include "tests/record/small_run.hpp"
 
-namespace verisim {
+namespace verisim::convert_test {
 namespace {
 
 using small_run::content_of;
@@ -211,4 +211,4 @@ TEST(ConvertRecording, OfTheMotionCapture) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::convert_test

@@ -14,7 +14,7 @@
 #include "engine/base/random.hpp"
 #include "tests/record/small_run.hpp"
 
-namespace verisim {
+namespace verisim::killed_run_test {
 namespace {
 
 using namespace small_run;
@@ -181,4 +181,4 @@ TEST(KilledRun, SaysHowManyRowsItKeeps) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::killed_run_test

@@ -10,7 +10,7 @@
 #include "tests/support/broken.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace verisim {
+namespace verisim::record_contracts_test {
 namespace {
 
 using small_run::Folder;
@@ -92,4 +92,4 @@ TEST(RunFile, RefusesColumnsOfWhichTheStateDoesNotComeFirst) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::record_contracts_test

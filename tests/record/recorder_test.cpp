@@ -13,7 +13,7 @@
 #include "tests/record/counted_new.hpp"
 #include "tests/record/small_run.hpp"
 
-namespace verisim {
+namespace verisim::recorder_test {
 namespace {
 
 using namespace small_run;
@@ -331,4 +331,4 @@ TEST(Recorder, WritesTheSameBytesForTheSameRun) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::recorder_test

@@ -5,7 +5,7 @@
 #include "engine/base/random.hpp"
 #include "tests/record/small_run.hpp"
 
-namespace verisim {
+namespace verisim::run_file_test {
 namespace {
 
 using namespace small_run;
@@ -213,4 +213,4 @@ TEST(RunFile, SurvivesFlippedBits) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::run_file_test

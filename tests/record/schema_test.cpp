@@ -3,7 +3,7 @@
 #include "engine/base/error.hpp"
 #include "engine/record/run_file.hpp"
 
-namespace verisim {
+namespace verisim::schema_test {
 namespace {
 
 Column column(const std::string& path, Dtype dtype, std::size_t width) {
@@ -35,4 +35,4 @@ TEST(SchemaDeathTest, InsistsOnStateFirst) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::schema_test

@@ -9,7 +9,7 @@
 #include "engine/base/pinned_math.hpp"
 #include "tests/record/small_run.hpp"
 
-namespace verisim {
+namespace verisim::synth_test {
 namespace {
 
 using small_run::error_of;
@@ -98,4 +98,4 @@ TEST(Synth, RefusesWhatItDoesNotKnowWithTheNearestName) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::synth_test

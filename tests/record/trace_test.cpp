@@ -11,7 +11,7 @@
 #include "engine/base/random.hpp"
 #include "tests/record/small_run.hpp"
 
-namespace verisim {
+namespace verisim::trace_test {
 namespace {
 
 using small_run::content_of;
@@ -220,4 +220,4 @@ TEST(Trace, IsWrittenWhollyOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::trace_test

@@ -7,7 +7,7 @@
 
 #include "engine/base/random.hpp"
 
-namespace verisim::reproduce {
+namespace verisim::reproduce::statistics_test {
 namespace {
 
 TEST(Statistics, MeanAndIntervalOfAWorkedExample) {
@@ -64,4 +64,4 @@ TEST(Statistics, IntervalCoversTheTruthInAbout95OfAHundredCases) {
 }
 
 }  // namespace
-}  // namespace verisim::reproduce
+}  // namespace verisim::reproduce::statistics_test

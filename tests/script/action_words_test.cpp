@@ -4,7 +4,7 @@
 
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::action_words_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -184,4 +184,4 @@ TEST(Simulation, RefusesNewObjectsWhileItRuns) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::action_words_test

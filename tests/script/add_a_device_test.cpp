@@ -9,7 +9,7 @@
 #include "engine/script/device_node.hpp"
 #include "engine/script/script_state.hpp"
 
-namespace verisim::script {
+namespace verisim::script::add_a_device_test {
 namespace {
 
 // Step 1: the classes (in engine/device: a file of their own).
@@ -154,4 +154,4 @@ TEST(AddingADevice, MakesASourceThatIsNotBound) {
 }
 
 }  // namespace
-}  // namespace verisim::script
+}  // namespace verisim::script::add_a_device_test

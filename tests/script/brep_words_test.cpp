@@ -4,7 +4,7 @@
 
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::brep_words_test {
 namespace {
 
 // A cube of 40 mm in voxels of 5 mm: its sides lie between voxels or in them, its surface is known by |x|, |y|, |z|.
@@ -204,4 +204,4 @@ TEST(BrepWords, AreForTheTimeInWhichTheSceneIsBuilt) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::brep_words_test

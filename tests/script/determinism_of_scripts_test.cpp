@@ -7,7 +7,7 @@
 #include "engine/base/pinned_math.hpp"
 #include "tests/script/bare_sandbox.hpp"
 
-namespace verisim::script {
+namespace verisim::script::determinism_of_scripts_test {
 namespace {
 
 // Shifts where the next objects lie, as another run would.
@@ -130,4 +130,4 @@ TEST(Print, JoinsWithTabsAsLuaDoes) {
 }
 
 }  // namespace
-}  // namespace verisim::script
+}  // namespace verisim::script::determinism_of_scripts_test

@@ -3,7 +3,7 @@
 
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::device_words_test {
 namespace {
 
 constexpr const char* kTrace = R"(# verisim-trace 1
@@ -171,4 +171,4 @@ TEST(AddDevice, RefusesADeviceTwice) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::device_words_test

@@ -3,7 +3,7 @@
 
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::file_words_test {
 namespace {
 
 TEST(Files, OutsideTheScenariosFolderCannotBeReached) {
@@ -77,4 +77,4 @@ TEST(Errors, NameTheFileTheyHappenIn) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::file_words_test

@@ -3,7 +3,7 @@
 
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::osg_words_test {
 namespace {
 
 TEST(Vectors, HaveOpenSceneGraphsOperators) {
@@ -80,4 +80,4 @@ TEST(MatrixTransform, TakesSimilaritiesOnly) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::osg_words_test

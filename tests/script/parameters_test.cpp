@@ -3,7 +3,7 @@
 
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::parameters_test {
 namespace {
 
 std::string resolved(const std::string& declaration, std::vector<std::pair<std::string, std::string>> sets) {
@@ -112,4 +112,4 @@ TEST(Scenario, EndsAScriptThatEatsMemory) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::parameters_test

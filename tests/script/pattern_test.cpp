@@ -7,7 +7,7 @@
 #include "engine/base/random.hpp"
 #include "tests/script/bare_sandbox.hpp"
 
-namespace verisim::script {
+namespace verisim::script::pattern_test {
 namespace {
 
 TEST(Patterns, GiveTheResultsOfTheManual) {
@@ -127,4 +127,4 @@ TEST(Patterns, FindWhatLuasOwnMatcherFinds) {
 }
 
 }  // namespace
-}  // namespace verisim::script
+}  // namespace verisim::script::pattern_test

@@ -4,7 +4,7 @@
 
 #include "tests/script/bare_sandbox.hpp"
 
-namespace verisim::script {
+namespace verisim::script::sandbox_test {
 namespace {
 
 constexpr const char* kSpent = "without coming to an end";
@@ -147,4 +147,4 @@ TEST(Sandbox, LeavesTheStackAsItWas) {
 }
 
 }  // namespace
-}  // namespace verisim::script
+}  // namespace verisim::script::sandbox_test

@@ -5,7 +5,7 @@
 #include "engine/base/pinned_math.hpp"
 #include "tests/script/written_scenario.hpp"
 
-namespace verisim {
+namespace verisim::scene_words_test {
 namespace {
 
 TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
@@ -271,4 +271,4 @@ TEST(Drawing, IsIgnoredAndSaidOnce) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::scene_words_test

@@ -9,7 +9,7 @@
 #include "tests/script/written_scenario.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim::script {
+namespace verisim::script::script_contracts_test {
 namespace {
 
 TEST(ScenarioDeathTest, IsTakenOnceAndAttachedOnce) {
@@ -58,4 +58,4 @@ TEST(Events, HaveAKind) {
 }
 
 }  // namespace
-}  // namespace verisim::script
+}  // namespace verisim::script::script_contracts_test

@@ -6,7 +6,7 @@
 
 #include "engine/base/error.hpp"
 
-namespace verisim {
+namespace verisim::clocks_test {
 namespace {
 
 std::vector<std::uint64_t> due_frames(double dt, double rate_hz, std::uint64_t frames) {
@@ -45,4 +45,4 @@ TEST(Clocks, RefuseRatesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::clocks_test

@@ -4,7 +4,7 @@
 
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::exact_border_test {
 namespace {
 
 constexpr double kThick = 0.02, kVoxel = 0.002;
@@ -159,4 +159,4 @@ TEST(Border, OfWhatIsKnownIsTheBorderOfWhatVoxelsAnswer) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::exact_border_test

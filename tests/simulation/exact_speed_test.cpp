@@ -4,7 +4,7 @@
 
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::exact_speed_test {
 namespace {
 
 constexpr std::size_t kBox = 1;
@@ -47,4 +47,4 @@ TEST(FastBox, IsStoppedAtThePlateWhateverTheVoxels) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::exact_speed_test

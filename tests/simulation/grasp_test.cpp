@@ -2,7 +2,7 @@
 
 #include "tests/simulation/scenes.hpp"
 
-namespace verisim {
+namespace verisim::grasp_test {
 namespace {
 
 HapticSamples still_with_button(const Vector3d& p, std::vector<std::uint8_t> button) {
@@ -73,4 +73,4 @@ TEST(Grasp, TheHeldBodyKeepsItsPlaceInTheHand) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::grasp_test

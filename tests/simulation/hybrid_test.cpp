@@ -9,7 +9,7 @@
 #include "engine/base/error.hpp"
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::hybrid_test {
 namespace {
 
 constexpr std::size_t kBlock = 0, kPin = 1;
@@ -307,4 +307,4 @@ TEST(Hybrid, FollowsTheScenesMeasureAndReduction) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::hybrid_test

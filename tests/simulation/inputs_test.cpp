@@ -7,7 +7,7 @@
 
 #include "engine/base/error.hpp"
 
-namespace verisim {
+namespace verisim::inputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(InputsTest, StoredInputsServeOnlyWhatTheyHold) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::inputs_test

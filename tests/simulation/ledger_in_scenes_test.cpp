@@ -5,7 +5,7 @@
 
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::ledger_in_scenes_test {
 namespace {
 
 /// The largest residual of a run over the energy that went through it.
@@ -74,4 +74,4 @@ TEST(LedgerInScenes, WithoutTheLimitVoxelsGiveEnergy) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::ledger_in_scenes_test

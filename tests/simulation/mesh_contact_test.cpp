@@ -4,7 +4,7 @@
 
 #include "tests/simulation/hybrid_scenes.hpp"
 
-namespace verisim {
+namespace verisim::mesh_contact_test {
 namespace {
 
 constexpr std::size_t kMoving = 1;
@@ -83,4 +83,4 @@ TEST(MeshContact, LeavesAllOfTheClearanceFree) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::mesh_contact_test

@@ -6,7 +6,7 @@
 #include "tests/simulation/hybrid_scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::reaction_test {
 namespace {
 
 using test::tolerance;
@@ -134,4 +134,4 @@ TEST(ConstraintFrames, CountAFrameOnceHoweverManyLinksAreHeld) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::reaction_test

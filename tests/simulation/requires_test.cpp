@@ -4,7 +4,7 @@
 #include "engine/base/error.hpp"
 #include "tests/simulation/scenes.hpp"
 
-namespace verisim {
+namespace verisim::requires_test {
 namespace {
 
 std::size_t links_of(const Simulation& simulation) {
@@ -57,4 +57,4 @@ TEST(Requires, BodiesApartCostABroadPhaseOnly) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::requires_test

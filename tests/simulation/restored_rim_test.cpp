@@ -7,7 +7,7 @@
 #include "tests/simulation/hybrid_scenes.hpp"
 #include "tests/support/tolerance.hpp"
 
-namespace verisim {
+namespace verisim::restored_rim_test {
 namespace {
 
 constexpr std::size_t kPin = 1;
@@ -63,4 +63,4 @@ TEST(RestoredRim, LetsAPinGoInOnceItsEndIsInTheHole) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::restored_rim_test

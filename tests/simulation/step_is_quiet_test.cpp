@@ -66,7 +66,7 @@ extern "C" int clock_gettime(clockid_t id, timespec* t) {
   return real(id, t);
 }
 
-namespace verisim {
+namespace verisim::step_is_quiet_test {
 namespace {
 
 std::vector<int> kept;  // outlives its test, so that no compiler may leave the allocation out
@@ -158,4 +158,4 @@ TEST(StepIsQuiet, NoticesAnAllocationALockAndAClock) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::step_is_quiet_test

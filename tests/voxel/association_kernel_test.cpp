@@ -15,7 +15,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/voxel/kernel_shapes.hpp"
 
-namespace verisim {
+namespace verisim::association_kernel_test {
 namespace {
 
 using testing::make;
@@ -204,4 +204,4 @@ INSTANTIATE_TEST_SUITE_P(Files, AssociationOfFile, ::testing::ValuesIn(kFiles),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::association_kernel_test

@@ -13,7 +13,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/voxel/shapes.hpp"
 
-namespace verisim {
+namespace verisim::association_test {
 namespace {
 
 using testing::make;
@@ -396,4 +396,4 @@ TEST(DeclaredFeatures, RefuseEntitiesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::association_test

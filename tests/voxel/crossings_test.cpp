@@ -7,7 +7,7 @@
 #include "engine/base/random.hpp"
 #include "tests/voxel/plain.hpp"
 
-namespace verisim {
+namespace verisim::crossings_test {
 namespace {
 
 /// A tetrahedron in a grid of two bricks along x and one along y and z, looking outward or, every other time, inward.
@@ -55,4 +55,4 @@ TEST(WindingChange, IsTheDifferenceOfTheWindingNumbersAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::crossings_test

@@ -11,7 +11,7 @@
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace verisim {
+namespace verisim::feature_sets_test {
 namespace {
 
 using Set = std::vector<EntityNumber>;
@@ -65,4 +65,4 @@ TEST(FeatureSets, UseEveryNumberAndThenRefuseInsteadOfWrappingAround) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::feature_sets_test

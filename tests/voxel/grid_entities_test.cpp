@@ -7,7 +7,7 @@
 #include "engine/voxel/trim.hpp"
 #include "tests/support/random_inputs.hpp"
 
-namespace verisim {
+namespace verisim::grid_entities_test {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -272,4 +272,4 @@ TEST(FaceTrim, IsLooseIfItsKnownPointsContradictItsBounds) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::grid_entities_test

@@ -48,7 +48,7 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
   uncounted(memory);
 }
 
-namespace verisim {
+namespace verisim::memory_test {
 namespace {
 
 struct Measured {
@@ -126,4 +126,4 @@ TEST(VoxelMemory, IsRefusedBeforeItIsAllocatedWithASizeThatFits) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::memory_test

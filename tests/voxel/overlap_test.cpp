@@ -6,7 +6,7 @@
 #include "engine/voxel/voxelize.hpp"
 #include "tests/voxel/exact.hpp"
 
-namespace verisim {
+namespace verisim::overlap_test {
 namespace {
 
 /// Draws whole numbers and fractions one after the other.
@@ -146,4 +146,4 @@ TEST(TriangleOverlap, EqualsTheSingleBoxTestForTrianglesOfAnySize) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::overlap_test

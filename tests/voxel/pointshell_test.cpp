@@ -9,7 +9,7 @@
 #include "tests/voxel/plain.hpp"
 #include "tests/voxel/shapes.hpp"
 
-namespace verisim {
+namespace verisim::pointshell_test {
 namespace {
 
 Vector3d point(const Pointshell& shell, std::size_t i) {
@@ -170,4 +170,4 @@ TEST(ThinnedPointshell, ClustersHoldManyPoints) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::pointshell_test

@@ -4,7 +4,7 @@
 #include "engine/voxel/voxelize.hpp"
 #include "tests/voxel/shapes.hpp"
 
-namespace verisim {
+namespace verisim::refusal_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -84,4 +84,4 @@ TEST(Voxelize, IgnoresUnusedVertices) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::refusal_test

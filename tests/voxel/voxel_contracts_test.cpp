@@ -14,7 +14,7 @@
 #include "tests/support/broken.hpp"
 #include "tests/voxel/shapes.hpp"
 
-namespace verisim {
+namespace verisim::voxel_contracts_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -202,4 +202,4 @@ TEST(EdgesDeathTest, LieInAGrid) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::voxel_contracts_test

@@ -5,7 +5,7 @@
 #include "tests/voxel/plain.hpp"
 #include "tests/voxel/shapes.hpp"
 
-namespace verisim {
+namespace verisim::voxelize_test {
 namespace {
 
 using shapes::both;
@@ -187,4 +187,4 @@ TEST(GridOrigin, LeavesABorderOfOneBrickAndLittleMore) {
 }
 
 }  // namespace
-}  // namespace verisim
+}  // namespace verisim::voxelize_test

@@ -8,7 +8,7 @@
 #include "engine/base/random.hpp"
 #include "engine/vrpn/payload.hpp"
 
-namespace verisim::vrpn {
+namespace verisim::vrpn::connection_test {
 namespace {
 
 const Names kServerNames{{"Tracker0", "WiiMote0"}, {std::string(kPose), std::string(kAnalog), std::string(kPong)}};
@@ -176,4 +176,4 @@ TEST(Fuzz, NoStreamBreaksAConnection) {
 }
 
 }  // namespace
-}  // namespace verisim::vrpn
+}  // namespace verisim::vrpn::connection_test

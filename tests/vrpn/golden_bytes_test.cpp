@@ -7,7 +7,7 @@
 #include "engine/vrpn/connection.hpp"
 #include "engine/vrpn/payload.hpp"
 
-namespace verisim::vrpn {
+namespace verisim::vrpn::golden_bytes_test {
 namespace {
 
 using nlohmann::json;
@@ -193,4 +193,4 @@ TEST_F(GoldenBytes, WholeSessionsAreUnderstoodHoweverTheStreamIsCut) {
 }
 
 }  // namespace
-}  // namespace verisim::vrpn
+}  // namespace verisim::vrpn::golden_bytes_test

@@ -8,7 +8,7 @@
 #include "engine/base/random.hpp"
 #include "engine/vrpn/payload.hpp"
 
-namespace verisim::vrpn {
+namespace verisim::vrpn::message_test {
 namespace {
 
 Bytes bytes_of(std::string_view text) {
@@ -166,4 +166,4 @@ TEST(Fuzz, NoBytesBreakTheDecoders) {
 }
 
 }  // namespace
-}  // namespace verisim::vrpn
+}  // namespace verisim::vrpn::message_test

@@ -7,7 +7,7 @@
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
 
-namespace verisim::vrpn {
+namespace verisim::vrpn::server_test {
 namespace {
 
 constexpr Address kLoopback{0x7f000001, 0};
@@ -233,4 +233,4 @@ TEST(RemoteName, IsReadAsStockReadsIt) {
 }
 
 }  // namespace
-}  // namespace verisim::vrpn
+}  // namespace verisim::vrpn::server_test

@@ -7,7 +7,7 @@
 #include "engine/vrpn/server.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim::vrpn {
+namespace verisim::vrpn::vrpn_contracts_test {
 namespace {
 
 constexpr Address kLoopback{0x7f000001, 0};
@@ -67,4 +67,4 @@ TEST(TurnDeathTest, WaitsNoLongerThanItIsTold) {
 }
 
 }  // namespace
-}  // namespace verisim::vrpn
+}  // namespace verisim::vrpn::vrpn_contracts_test

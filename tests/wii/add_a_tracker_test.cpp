@@ -7,7 +7,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/wii/validation_runs.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::add_a_tracker_test {
 namespace {
 
 using test::expect_refused;
@@ -86,4 +86,4 @@ TEST(AddingATracker, IsNotKnownWithoutItsRow) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::add_a_tracker_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace verisim::wii {
+namespace verisim::wii::admission_test {
 namespace {
 
 using Verdict = Admission::Verdict;
@@ -52,4 +52,4 @@ TEST(Admission, AfterSilenceAnyPlaceIsNew) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::admission_test

@@ -8,7 +8,7 @@
 #include "engine/base/random.hpp"
 #include "engine/wii/tracker.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::bad_input_test {
 namespace {
 
 constexpr Channels kGood = {0.75, 0, 0, 1, 609, 384, 4, 415, 384, 4, -1, -1, -1, -1, -1, -1};
@@ -220,4 +220,4 @@ INSTANTIATE_TEST_SUITE_P(Trackers, BadInput, testing::ValuesIn(honest_trackers()
 });
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::bad_input_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace verisim::wii {
+namespace verisim::wii::coverage_test {
 namespace {
 
 constexpr double kSpacing = 0.15;
@@ -39,4 +39,4 @@ TEST(Coverage, CountAgreesWithTheAreaAndTheCorrectedVolumeOnly) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::coverage_test

@@ -8,7 +8,7 @@
 #include "engine/wii/two_point.hpp"
 #include "engine/wii/virtual_remote.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::geometric_test {
 namespace {
 
 Situation tilted(double pitch, double roll, const Pose& X_LH) {
@@ -159,4 +159,4 @@ TEST(MakeTracker, RefusesLedsThatLieBehindEachOther) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::geometric_test

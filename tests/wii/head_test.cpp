@@ -7,7 +7,7 @@
 
 #include "engine/base/error.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::head_test {
 namespace {
 
 constexpr Channels kAhead = {0.75, 0, 0, 1, 609, 384, 4, 415, 384, 4, -1, -1, -1, -1, -1, -1};
@@ -91,4 +91,4 @@ TEST(Head, RefusesUnknownNamesAndGlassesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::head_test

@@ -6,7 +6,7 @@
 #include "engine/wii/trajectories.hpp"
 #include "tests/wii/validation_runs.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::multi_point_test {
 namespace {
 
 RemoteSettings ideal(const LedLayout& leds) {
@@ -95,4 +95,4 @@ TEST(TwoLeds, ComeBackFromALampThatTookAnLedsPlace) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::multi_point_test

@@ -3,7 +3,7 @@
 
 #include "tests/wii/validation_runs.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::numbers_test {
 namespace {
 
 TEST(Numbers, StaticAtOneMetreIsWithinHalfACentimetre) {
@@ -81,4 +81,4 @@ TEST(Numbers, NearlyEverySampleWithBothLedsInViewIsValid) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::numbers_test

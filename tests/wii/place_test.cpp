@@ -5,7 +5,7 @@
 
 #include "engine/base/error.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::place_test {
 namespace {
 
 PlaceOptions seated_in_front_of_a_screen() {
@@ -54,4 +54,4 @@ TEST(Place, RefusesNoHeadsAndAnInvertedRoom) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::place_test

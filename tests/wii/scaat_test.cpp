@@ -6,7 +6,7 @@
 #include "engine/wii/head_filter.hpp"
 #include "tests/wii/validation_runs.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::scaat_test {
 namespace {
 
 TEST(HeadFilter, CovarianceGrowsWhileNothingIsSeenAndTheHeadStaysNear) {
@@ -100,4 +100,4 @@ TEST(Scaat, IsConsistentInNaturalMotion) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::scaat_test

@@ -9,7 +9,7 @@
 #include "engine/wii/validation_figures.hpp"
 #include "tests/wii/validation_runs.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::validate_test {
 namespace {
 
 // A tracker that is always 1 cm off along x and claims 1 cm: rms 1 cm, NEES 1/3 per degree of freedom.
@@ -107,4 +107,4 @@ TEST(Validate, RefusesUnknownNames) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::validate_test

@@ -9,7 +9,7 @@
 #include "engine/base/error.hpp"
 #include "tests/wii/recordings.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::virtual_remote_test {
 namespace {
 
 Situation head_at(const Vector3d& p_W) {
@@ -239,4 +239,4 @@ TEST(VirtualRemote, RefusesSettingsOutsideTheirRange) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::virtual_remote_test

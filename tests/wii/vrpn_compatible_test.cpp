@@ -7,7 +7,7 @@
 #include "engine/wii/tracker.hpp"
 #include "tests/wii/recordings.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::vrpn_compatible_test {
 namespace {
 
 std::string printed(double value) {
@@ -65,4 +65,4 @@ TEST(VrpnCompatible, StaysHalfATurnWrongAfterASwap) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::vrpn_compatible_test

@@ -16,7 +16,7 @@
 #include "tests/support/broken.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::wii_contracts_test {
 namespace {
 
 using test::expect_refused;
@@ -223,4 +223,4 @@ TEST(Trajectory, RefusesPosesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::wii_contracts_test

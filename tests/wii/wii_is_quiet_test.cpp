@@ -22,7 +22,7 @@ void operator delete(void* p, std::size_t) noexcept {
   std::free(p);
 }
 
-namespace verisim::wii {
+namespace verisim::wii::wii_is_quiet_test {
 namespace {
 
 TEST(Trackers, AllocateNothingPerUpdate) {
@@ -50,4 +50,4 @@ TEST(Trackers, AllocateNothingPerUpdate) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::wii_is_quiet_test

@@ -4,7 +4,7 @@
 
 #include "engine/wii/validate.hpp"
 
-namespace verisim::wii {
+namespace verisim::wii::wii_thresholds_test {
 namespace {
 
 struct Number {
@@ -66,4 +66,4 @@ TEST_P(WiiThresholds, HardlyChangeTheErrorAndTheAvailability) {
 }
 
 }  // namespace
-}  // namespace verisim::wii
+}  // namespace verisim::wii::wii_thresholds_test

@@ -139,18 +139,19 @@ class ParameterRanges {
     set_u_range(face_, s, s.center, mesh_, region_);
     face_.v_range = range_of(points_, [&](const Vector3d& p) {
       const Profile f = profile_of(p, s.center, s.direction);
-      return pinned::atan2(f.height, f.rho);
+      return Meridian{.kind = Kind::sphere, .radius = s.radius}.parameter(f.rho, f.height);
     });
     if (ray_hits(mesh_, region_, s.center, s.direction)) face_.v_range[1] = 0.25 * kFullTurn;
     if (ray_hits(mesh_, region_, s.center, -s.direction)) face_.v_range[0] = -0.25 * kFullTurn;
   }
   void operator()(Torus& s) const {
     set_u_range(face_, s, s.center, mesh_, region_);
-    const double side = is_past_axis(s) ? -1 : 1;
-    if (side < 0) s.x_axis = -s.x_axis;
+    const bool beyond = is_past_axis(s);
+    if (beyond) s.x_axis = -s.x_axis;
+    const Meridian tube = tube_of(s, beyond);
     const Range turn = angle_range(mesh_, region_, [&](const Vector3d& p, double& angle) {
       const Profile f = profile_of(p, s.center, s.direction);
-      angle = pinned::atan2(f.height, side * f.rho - s.major_radius);
+      angle = tube.parameter(f.rho, f.height);
       return true;
     });
     face_.v_range = is_full_turn(turn) ? Range{0, kFullTurn} : turn;
@@ -162,17 +163,17 @@ class ParameterRanges {
     return range_of(points_, [&](const Vector3d& p) { return (p - point).dot(axis); });
   }
 
+  [[nodiscard]] static Meridian tube_of(const Torus& s, bool beyond_axis) {
+    return {.kind = Kind::torus, .radius = s.minor_radius, .ring = beyond_axis ? -s.major_radius : s.major_radius};
+  }
+
   /// True if the points belong to the part of the tube that has passed the axis: the tube is wider than its ring.
   [[nodiscard]] bool is_past_axis(const Torus& s) const {
     double here = 0, beyond = 0;
     for (const Vector3d& p : points_) {
       const Profile f = profile_of(p, s.center, s.direction);
-      const auto distance = [&](double rho) {
-        const double from_ring = rho - s.major_radius;
-        return std::abs(std::sqrt(from_ring * from_ring + f.height * f.height) - s.minor_radius);
-      };
-      here += distance(f.rho);
-      beyond += distance(-f.rho);
+      here += std::abs(tube_of(s, false).distance(f.rho, f.height));
+      beyond += std::abs(tube_of(s, true).distance(f.rho, f.height));
     }
     return beyond < here;
   }

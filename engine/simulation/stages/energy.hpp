@@ -10,20 +10,20 @@ namespace verisim {
 
 class EnergyBook {
  public:
-  explicit EnergyBook(const World& world) : now_(energy_of(world)) { ledger_.start(now_); }
+  explicit EnergyBook(const World& world) : state_(energy_of(world)) { ledger_.start(state_); }
 
   /// Before a step: whatever changed the energy since the last one's end was the hand (it moved the handle), a grasp or
   /// a script.
-  void enter_jump(const World& world) { ledger_.add_jump(energy_of(world).sum() - now_.sum()); }
+  void enter_jump(const World& world) { ledger_.add_jump(energy_of(world).sum() - state_.sum()); }
   /// After a step.
-  void settle(const World& world) { now_ = energy_of(world); }
+  void settle(const World& world) { state_ = energy_of(world); }
 
   [[nodiscard]] Ledger& ledger() { return ledger_; }
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
-  [[nodiscard]] const EnergyState& now() const { return now_; }
+  [[nodiscard]] const EnergyState& state() const { return state_; }
 
  private:
-  EnergyState now_;
+  EnergyState state_;
   Ledger ledger_;
 };
 
