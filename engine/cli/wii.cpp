@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -55,7 +56,8 @@ ordered_json coverage_of(const PlaceCommand& c, const wii::TrackerSettings& trac
   const double spacing = (tracker.leds.p_H[0] - tracker.leds.p_H[1]).norm();
   const double d1 = c.range[0];
   const double d2 = c.range[1];
-  if (!(d1 > 0) || !(d2 > d1) || wii::trackable_area(tracker.fov, spacing, d1) == 0)
+  wii::check_settings(tracker);
+  if (!(d1 > 0) || !(d2 > d1) || !std::isfinite(d2) || wii::trackable_area(tracker.fov, spacing, d1) == 0)
     fail(ErrorKind::usage, "--range {} {}: must grow, and the LEDs must fit into the view at its beginning", d1, d2);
   const wii::Counted area = wii::count_trackable_area(tracker.fov, spacing, d2, c.samples, c.seed);
   const wii::Counted volume = wii::count_trackable_volume(tracker.fov, spacing, d1, d2, c.samples, c.seed);

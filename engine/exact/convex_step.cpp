@@ -2,12 +2,16 @@
 
 #include <Eigen/Cholesky>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim::exact {
 namespace {
 
+/// Newton's method ends after a few iterations. This bounds the time of a step with absurd numbers.
 constexpr int kIterationsMax = 60;
+/// Relative to the cost: a smaller Newton decrement is lost in rounding.
+constexpr double kRoundingOfCost = 1e-15;
 /// Largest matrix of unknowns, on the stack.
 constexpr int kUnknownsMax = 6 * ConvexStep::kBodiesMax;
 using MatrixN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kUnknownsMax, kUnknownsMax>;
@@ -56,12 +60,16 @@ void ConvexStep::clear() {
 
 int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess) {
   VERISIM_ASSERT(bodies_.size() < kBodiesMax);
+  VERISIM_ASSERT(is_symmetric(M));
+  VERISIM_ASSERT(!(M.diagonal().array() <= 0).any());
   bodies_.push_back({p_WC, M, u0, guess, Vector6d::Zero()});
   return static_cast<int>(bodies_.size()) - 1;
 }
 
 void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second) {
   VERISIM_ASSERT(first != second);
+  VERISIM_ASSERT(std::min(first, second) >= kFixed);
+  VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));
   const auto rate = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
     const Vector3d n = sign * row.normal;
     const Vector3d arm = row.point - bodies_[at(body)].p_WC;
@@ -209,14 +217,14 @@ ConvexStep::LineValue ConvexStep::value_along(double t) const {
 /// True if the Newton decrement is below the rounding of the cost.
 bool ConvexStep::has_converged() const {
   const LineValue begin = value_along(0);
-  return -begin.slope <= 1e-15 * begin.cost;
+  return -begin.slope <= kRoundingOfCost * begin.cost;
 }
 
 /// Line search: 1 if the full step lowers the cost enough (Armijo), else the exact minimum. It is found to the last
 /// digits: a step that ends just before the next row begins to act would meet that row again in the next direction.
 double ConvexStep::step_length() const {
-  constexpr double kEnough = 1e-4;
-  constexpr double kFlat = 1e-10;  // of the slope at the start
+  constexpr double kEnough = 1e-4;  // of the slope at the start: Armijo's usual constant
+  constexpr double kFlat = 1e-10;   // of the slope at the start
   const LineValue begin = value_along(0);
   LineValue here = value_along(1);
   if (here.cost <= begin.cost + kEnough * begin.slope) return 1;
@@ -246,6 +254,7 @@ bool ConvexStep::advance(double t) {
 }
 
 int ConvexStep::solve(double dt) {
+  VERISIM_ASSERT(is_positive(dt));
   finished_ = true;
   if (bodies_.empty()) return 0;
   choose_start(dt);
@@ -263,7 +272,13 @@ int ConvexStep::solve(double dt) {
   return kIterationsMax;
 }
 
+const Vector6d& ConvexStep::velocity(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
+  return bodies_[at(body)].u;
+}
+
 Wrench ConvexStep::wrench(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
   Vector6d sum = Vector6d::Zero();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side)

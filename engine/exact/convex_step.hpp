@@ -36,21 +36,22 @@ class ConvexStep {
   /// Removes all bodies and rows. Nothing is kept: the answer depends on this step alone.
   void clear();
 
-  /// @param M   symmetric positive definite, about the centre of mass
+  /// @param M   about the centre of mass
   /// @param u0  velocity that the body would have without contact
   /// @param guess  velocity to start from: any finite one; that of the last step saves iterations
-  /// @pre fewer than kBodiesMax bodies so far  @returns the body's number
+  /// @pre fewer than kBodiesMax bodies so far; M is symmetric positive definite  @returns the body's number
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess);
 
-  /// Adds rows between two bodies, numbers from add_body or kFixed. Rows beyond rows_max are left out and counted.
-  /// @pre the two differ: not both fixed
+  /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
+  /// @pre both are numbers from add_body or kFixed, and not the same
   void add_rows(std::span<const ContactRow> rows, int first, int second);
 
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
-  /// 20 rows that act.
+  /// 20 rows that act. @pre dt is finite and above 0
   int solve(double dt);
 
-  [[nodiscard]] const Vector6d& velocity(int body) const { return bodies_[static_cast<std::size_t>(body)].u; }
+  /// @pre body is a number from add_body, here and below
+  [[nodiscard]] const Vector6d& velocity(int body) const;
   /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
   [[nodiscard]] Wrench wrench(int body) const;
   /// Normal force of the i-th row added [N, >= 0].

@@ -3,12 +3,10 @@
 namespace verisim::exact {
 namespace {
 
-// A ball that a curve carries is the body's boundary only where it touches the face that it belongs to; elsewhere it is
-// inside the body. A candidate's weight falls from 1 to 0 between these distances of its contact point from that face.
-// So the end of a segment does not stand for the closest place if that lies in the next segment.
-constexpr double kOwnFaceFull = 1e-7;  // m
-constexpr double kOwnFaceNone = 1e-6;  // m
-constexpr double kCoincident = 1e-7;   // m: a point that rests on a face overlaps it by less
+constexpr double kSameDistance = 1e-12;  // m, of two faces: a tenth of what double precision says of a body of metres
+/// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
+/// useful normal.
+constexpr double kBlade = 0.1;
 
 /// True if a point lies beyond a smooth edge, seen from the face.
 bool is_beyond(const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
@@ -84,7 +82,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
     c.at = a.at(c.p);
     other_at = b.at(c.p);
     const double d = c.at.distance - other_at.distance;
-    if (std::abs(d) < 1e-12) break;
+    if (std::abs(d) < kSameDistance) break;
     if (d < 0) {
       t_a = t;
       d_a = d;
@@ -103,7 +101,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
   const double weight_a = slope_b / (slope_b - slope_a);
   const Vector3d mixed = weight_a * c.at.normal + (1 - weight_a) * other_at.normal;
   const double length = mixed.norm();
-  if (length < 0.1) return false;
+  if (length < kBlade) return false;
   c.normal = mixed / length;
   c.gap = c.at.distance / length;
   c.edge_fraction = 4 * weight_a * (1 - weight_a);
@@ -112,10 +110,10 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
 
 }  // namespace
 
-OwnershipRule ownership_rule(double a, double b) {
+OwnershipRule ownership_rule(double a, double b, double coincident) {
   if (a >= 0 && b >= 0) return OwnershipRule::by_free_motion;
-  return std::max(a, b) >= 0 && std::min(a, b) > -kCoincident ? OwnershipRule::by_last_motion
-                                                              : OwnershipRule::by_position;
+  return std::max(a, b) >= 0 && std::min(a, b) > -coincident ? OwnershipRule::by_last_motion
+                                                             : OwnershipRule::by_position;
 }
 
 std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face) {
@@ -125,7 +123,7 @@ std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face) {
 bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool wins_tie) {
   double a = mine.distance;
   double b = other.distance;
-  const OwnershipRule rule = ownership_rule(a, b);
+  const OwnershipRule rule = ownership_rule(a, b, pair.motion.thresholds.coincident);
   if (rule != OwnershipRule::by_position) {
     const Vector3d step =
         pair.moved(p, rule == OwnershipRule::by_free_motion ? pair.motion.free_twist : pair.motion.last_twist);
@@ -142,7 +140,8 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     const Vector3d contact_point =
         pair.motion.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.p);
     const double off_own_face = std::abs(pair.mover.faces[feature.own_face].surface->at(contact_point).distance);
-    c.weight = std::min(1.0, (kOwnFaceNone - off_own_face) / (kOwnFaceNone - kOwnFaceFull));
+    const SearchThresholds& fade = pair.motion.thresholds;
+    c.weight = std::min(1.0, (fade.own_face_none - off_own_face) / (fade.own_face_none - fade.own_face_full));
     return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
   }
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);

@@ -15,8 +15,9 @@ namespace verisim::exact {
 ///   by_last_motion  those after a repetition of the last step: the point lies on one of the faces. It slides along
 ///                   that face; its motion without contact would push it into the face and says nothing about sliding
 enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_motion };
-/// @param a, b  signed distances of the point from the two faces [m]
-[[nodiscard]] OwnershipRule ownership_rule(double a, double b);
+/// @param a, b        signed distances of the point from the two faces [m]
+/// @param coincident  m: SearchThresholds::coincident
+[[nodiscard]] OwnershipRule ownership_rule(double a, double b, double coincident);
 
 /// The other face of an edge of `face`.
 [[nodiscard]] std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face);

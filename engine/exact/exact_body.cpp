@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
@@ -10,8 +11,6 @@
 namespace verisim::exact {
 namespace {
 
-/// Below this sine of the angle between its two faces an edge is smooth: 0.5 degrees.
-constexpr double kSmooth = 0.0087;
 /// How far a round face may bulge out of the box of its triangles, relative to its radius: chords of 0.5 rad.
 constexpr double kSagitta = 0.03;
 
@@ -148,8 +147,8 @@ class PartImporter {
     set_extent(made, edge);
     if (surface[0] != nullptr && surface[1] != nullptr) {
       const double turn = outward(middle, 0).dot(surface[1]->at(points_[e][middle]).normal);
-      if (turn > kSmooth) made.convexity = Convexity::convex;
-      if (turn < -kSmooth) made.convexity = Convexity::concave;
+      if (turn > body_.options.smooth) made.convexity = Convexity::convex;
+      if (turn < -body_.options.smooth) made.convexity = Convexity::concave;
     }
     for (std::size_t i = 0; made.convexity == Convexity::smooth && i < points_[e].size(); ++i) {
       ExactEdge::Mark& mark = made.marks.emplace_back();
@@ -205,7 +204,17 @@ bool ExactEdge::limits_face_at(std::uint32_t face, const Vector3d& p, double dis
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {
-  VERISIM_ASSERT(options.spacing > 0);
+  VERISIM_ASSERT(is_positive(options.spacing));
+  VERISIM_ASSERT(is_positive(options.line_stiffness));
+  VERISIM_ASSERT(is_not_negative(options.point_length));
+  VERISIM_ASSERT(is_not_negative(options.smooth));
+  VERISIM_ASSERT(is_not_negative(options.group_angle));
+  for (const Part& part : parts) {
+    VERISIM_ASSERT(is_whole(part.mesh));
+    for (const Edge& edge : part.edges) {
+      for (const std::uint32_t face : edge.faces) VERISIM_ASSERT(face < part.faces.size());
+    }
+  }
   for (const Part& part : parts) PartImporter(*this, part);
   std::vector<Bounds> boxes;
   for (const ExactFace& face : faces) boxes.push_back(face.surface ? face.bounds : Bounds());

@@ -36,6 +36,9 @@ struct BodyOptions {
   double spacing = 0;               ///< m, > 0: longest segment; usually the voxel size
   double line_stiffness = 1.15e11;  ///< N/m per m of an edge
   double point_length = 0.004;      ///< m: a corner is as stiff as an edge of this length
+  // Heuristic: exact_thresholds_test says how little results depend on these.
+  double smooth = 0.0087;    ///< sine of the angle between its two faces, 0.5 degrees: below it an edge is smooth
+  double group_angle = 0.5;  ///< rad, largest arc of a group: farther segments push in different directions
 };
 
 /// Convex: the angle inside the material is below 180 degrees. Smooth: the faces are tangent (to 0.5 degrees).
@@ -106,7 +109,8 @@ inline constexpr std::uint32_t kBlockSize = 32;
 
 struct ExactBody {
   /// Parts that move as one, in body coordinates. A part without b-rep adds nothing, nor does a face without triangles
-  /// or an edge without a polyline. @pre options.spacing > 0
+  /// or an edge without a polyline. @pre spacing and line_stiffness are finite and above 0, the other options not
+  /// negative; meshes are whole (is_whole), edges name faces of their part
   ExactBody(std::span<const Part> parts, const BodyOptions& options);
 
   /// True if at least one face has a precise surface.

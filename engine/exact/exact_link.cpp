@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/exact/search.hpp"
 
 namespace verisim::exact {
@@ -12,7 +14,7 @@ Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d&
 }
 
 RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, double size,
-                               bool mover_is_second) {
+                               bool mover_is_second, const SearchThresholds& thresholds) {
   RelativeMotion motion;
   const Pose X_BM = base.X_WB.inverse() * mover.X_WB;
   motion.R = X_BM.rotation.toRotationMatrix();
@@ -31,6 +33,7 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   motion.margin = margin;
   motion.size = size;
   motion.mover_is_second = mover_is_second;
+  motion.thresholds = thresholds;
   return motion;
 }
 
@@ -42,8 +45,10 @@ bool is_finite(const BodyMotion& body) {
 }  // namespace
 
 ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
-                     std::size_t rows_max)
-    : first_(std::move(first)), second_(std::move(second)), rows_(rows_max) {
+                     std::size_t rows_max, const SearchThresholds& thresholds)
+    : first_(std::move(first)), second_(std::move(second)), rows_(rows_max), thresholds_(thresholds) {
+  VERISIM_ASSERT(thresholds.own_face_full < thresholds.own_face_none);
+  VERISIM_ASSERT(thresholds.cone_full < thresholds.cone_none);
   VERISIM_ASSERT(first_ != nullptr);
   VERISIM_ASSERT(second_ != nullptr);
   size_ = std::numeric_limits<double>::infinity();
@@ -58,11 +63,15 @@ void ExactLink::find(const BodyMotion& first, const BodyMotion& second, double d
   rows_.clear();
   cost_ = {};
   depth_max_ = 0;
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(!(margin < 0));  // of a run that diverges it may be no number at all
   if (!is_finite(first) || !is_finite(second)) return;
-  const double a =
-      search(*second_, *first_, relative_motion(second, first, dt, margin, size_, true), stack_, rows_, cost_);
-  const double b =
-      search(*first_, *second_, relative_motion(first, second, dt, margin, size_, false), stack_, rows_, cost_);
+  VERISIM_ASSERT(is_unit(first.X_WB.rotation));
+  VERISIM_ASSERT(is_unit(second.X_WB.rotation));
+  const RelativeMotion of_second = relative_motion(second, first, dt, margin, size_, true, thresholds_);
+  const RelativeMotion of_first = relative_motion(first, second, dt, margin, size_, false, thresholds_);
+  const double a = search(*second_, *first_, of_second, stack_, rows_, cost_);
+  const double b = search(*first_, *second_, of_first, stack_, rows_, cost_);
   depth_max_ = std::max(a, b);
 }
 

@@ -44,6 +44,22 @@ struct BodyMotion {
   Twist last_twist = {};             ///< likewise, at the end of the last step, contacts included
 };
 
+/// Thresholds of the search. Heuristic: chosen so that rows fade in and out instead of jumping. exact_thresholds_test
+/// says how little results depend on them.
+struct SearchThresholds {
+  /// m. A ball that a curve carries is the body's boundary only where it touches the face that it belongs to; elsewhere
+  /// it is inside the body. A candidate's weight falls from 1 to 0 between these distances of its contact point from
+  /// that face. So the end of a segment does not stand for the closest place if that lies in the next segment. Above
+  /// the error of the closest place (1e-10), below any clearance (1e-5).
+  double own_face_full = 1e-7, own_face_none = 1e-6;
+  double coincident = 1e-7;  ///< m: a point that rests on a face overlaps it by less
+  /// Sines of 25 and 40 degrees. A contact normal should lie in the mover's normal cone at the sample. Outside of it
+  /// the contact's weight falls from 1 to 0 between these angles out of the cone: more than a body tilts in its fit.
+  double cone_full = 0.42, cone_none = 0.64;
+  double touching = 1e-6;      ///< m: a part of a segment as near as this touches
+  double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone
+};
+
 /// Work of one search. The same for the same input.
 struct SearchCost {
   std::uint64_t samples = 0;         ///< compared with a face
@@ -53,14 +69,15 @@ struct SearchCost {
 
 class ExactLink {
  public:
-  /// @pre neither is null
+  /// @pre neither is null; each `full` threshold is below its `none`
   ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
-            std::size_t rows_max = 4096);
+            std::size_t rows_max = 4096, const SearchThresholds& thresholds = {});
 
   /// Replaces rows() by the contacts of these poses. No allocation. A pose or velocity that is not finite gives no row.
   /// The order of rows is that of features and faces, whatever the poses.
   /// @param dt      s, the step
   /// @param margin  m, largest gap that makes a row; include the distance that the bodies can close within the step
+  /// @pre dt is finite and above 0; margin >= 0; rotations are unit, if finite
   void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
 
   [[nodiscard]] const RowList& rows() const { return rows_; }
@@ -70,6 +87,7 @@ class ExactLink {
  private:
   std::shared_ptr<const ExactBody> first_, second_;
   RowList rows_;
+  SearchThresholds thresholds_;
   SearchCost cost_;
   double size_ = 0;  ///< m, half the diagonal of the smaller body
   double depth_max_ = 0;

@@ -10,7 +10,6 @@ namespace verisim::exact {
 namespace {
 
 constexpr double kSegmentMax = pinned::kPi / 8;  // rad: place_at's series hold for half of it
-constexpr double kGroupAngle = 0.5;              // rad
 
 /// A sample before it is stored.
 struct Sample {
@@ -78,8 +77,8 @@ Feature feature_of(const Segmentation& split, const BodyOptions& options) {
   f.half_length = f.half_width * std::max(split.x.norm(), split.y.norm());
   f.stiffness = 2 * f.half_length * options.line_stiffness;
   const bool is_arc = split.kind == Feature::Kind::arc;
-  f.group = is_arc ? static_cast<std::uint32_t>(
-                         std::clamp(static_cast<int>(kGroupAngle / split.width), 1, static_cast<int>(kGroupMax)))
+  f.group = is_arc ? static_cast<std::uint32_t>(std::clamp(static_cast<int>(options.group_angle / split.width), 1,
+                                                           static_cast<int>(kGroupMax)))
                    : kGroupMax;
   return f;
 }

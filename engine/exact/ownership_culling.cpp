@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/error.hpp"
 #include "engine/exact/edge_ownership.hpp"
 
 namespace verisim::exact {
@@ -46,7 +47,7 @@ DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const A
   bool some_free = false;
   pair.measure_all(pair.seen_from(other, placed, motion.last_twist), block, [&](std::uint32_t i, const Measure& m) {
     lead.now[i] = m.distance - distances.distance[i];
-    lead.rule[i] = ownership_rule(distances.distance[i], m.distance);
+    lead.rule[i] = ownership_rule(distances.distance[i], m.distance, motion.thresholds.coincident);
     lead.by_rule[i] = lead.now[i] + (lead.rule[i] == OwnershipRule::by_last_motion ? m.change : 0);
     some_before = some_before || lead.rule[i] == OwnershipRule::by_last_motion;
     some_free = some_free || lead.rule[i] == OwnershipRule::by_free_motion;
@@ -73,7 +74,8 @@ void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, con
     return placed.point({0, pair.mover.sample_c[block.begin + i], pair.mover.sample_s[block.begin + i]});
   };
   std::uint32_t first = 0;
-  while (gaps_ahead[first] == kOutOfReach) ++first;
+  while (first < count && gaps_ahead[first] == kOutOfReach) ++first;
+  VERISIM_ASSERT(first < count);
   const ExactEdge* edge = limiting_edge(pair, place(first), face);
   if (edge == nullptr) return;
   const auto& faces = pair.base.faces;

@@ -6,13 +6,6 @@
 namespace verisim::exact {
 namespace {
 
-// A contact normal should lie in the mover's normal cone at the sample. Outside of it the contact's weight falls from 1
-// to 0 between these sines of the angle by which the normal leaves the cone.
-constexpr double kConeFull = 0.42;     // 25 degrees
-constexpr double kConeNone = 0.64;     // 40 degrees
-constexpr double kTouching = 1e-6;     // m: a part of a segment as near as this touches
-constexpr double kWeightEnough = 0.5;  // below this weight the closest place does not carry its group alone
-
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
@@ -27,7 +20,7 @@ class Search {
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
   [[nodiscard]] double normal_cone_weight(std::uint32_t sample, const Vector3d& normal) const;
   [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n) const;
-  [[nodiscard]] static double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count);
+  [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
                                         Candidate& c);
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
@@ -118,7 +111,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   strongest.weight = 0;
   while (true) {
     const auto next = std::min_element(remaining.begin(), remaining.end());
-    const bool is_enough = best.gap_ahead == kOutOfReach || best.weight >= kWeightEnough;
+    const bool is_enough = best.gap_ahead == kOutOfReach || best.weight >= m.motion.thresholds.weight_enough;
     if (!(*next < (is_enough ? best.gap_ahead : std::max(best.gap_ahead, 0.0)))) break;
     Candidate c;
     c.group = begin;
@@ -132,7 +125,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   }
   if (best.gap_ahead == kOutOfReach) return;
   add_row(placed, best, count, face);
-  if (best.weight < kWeightEnough && strongest.weight > best.weight) {
+  if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
     add_row(placed, strongest, count, face);
   }
@@ -187,10 +180,10 @@ void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, s
 
 /// Fraction of a group's length that touches. A group that slopes towards the surface leaves it where the rise has used
 /// up the overlap at the closest place.
-double Search::touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) {
+double Search::touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const {
   const double rise = std::abs(c.normal.dot(placed.tangent(c.place)) - placed.feature->radius_slope) * 2 *
                       placed.feature->half_width * count;
-  const double overlap = kTouching + std::max(0.0, -c.gap);
+  const double overlap = pair_.motion.thresholds.touching + std::max(0.0, -c.gap);
   return rise > overlap ? overlap / rise : 1;
 }
 
@@ -203,7 +196,8 @@ double Search::normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d&
   double outside = 0;  // sine of the angle out of the normal cone
   for (std::uint32_t i = pair_.mover.cone_begin[sample]; i < pair_.mover.cone_begin[sample + 1]; ++i)
     outside = std::max(outside, -n.dot(pair_.mover.cone_directions[i]));
-  return std::clamp((kConeNone - outside) / (kConeNone - kConeFull), 0.0, 1.0);
+  const SearchThresholds& fade = pair_.motion.thresholds;
+  return std::clamp((fade.cone_none - outside) / (fade.cone_none - fade.cone_full), 0.0, 1.0);
 }
 
 /// Back-face culling: true if a plane's normal is outside of the normal cone of every sample of a block.

@@ -18,6 +18,7 @@ struct RelativeMotion {
   double margin;     ///< m, largest gap that makes a row
   double size;       ///< m, half the diagonal of the smaller body
   bool mover_is_second;
+  SearchThresholds thresholds;
 };
 
 /// Working memory of a search: pairs of tree nodes yet to be visited.

@@ -14,6 +14,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "engine/base/error.hpp"
+
 extern char** environ;
 
 namespace verisim {
@@ -160,6 +162,7 @@ class Exchange {
 }  // namespace
 
 Message ask_cad(const Message& request, const std::string& subject, double time_limit_s) {
+  VERISIM_ASSERT(time_limit_s > 0);
   const std::string bytes = encode(request);
   Process process(find_program());
   const std::optional<std::string> answer = Exchange(process, bytes).run(time_limit_s);

@@ -16,6 +16,7 @@ inline constexpr double kCadTimeLimit = 120;  ///< s; the largest model known to
 ///
 /// Errors: what the program reports, with its kind; Error(input) if it crashes or passes the time limit; Error(io) if
 /// it cannot be started.
+/// @pre time_limit_s > 0
 [[nodiscard]] Message ask_cad(const Message& request, const std::string& subject, double time_limit_s = kCadTimeLimit);
 
 }  // namespace verisim

@@ -1,5 +1,7 @@
 #include "engine/geometry/merged.hpp"
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -45,6 +47,10 @@ MassProperties combined(const std::vector<Part>& parts) {
 }  // namespace
 
 Part merged(const std::vector<Part>& parts) {
+  VERISIM_ASSERT(!parts.empty());
+  for (const Part& part : parts)
+    VERISIM_ASSERT(part.mesh.face_of_triangle.empty() ||
+                   part.mesh.face_of_triangle.size() == part.mesh.triangles.size());
   Part all;
   all.name = parts.front().name;
   all.color = parts.front().color;

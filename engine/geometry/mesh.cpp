@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "engine/base/error.hpp"
 #include "engine/geometry/mesh_edges.hpp"
 #include "engine/geometry/self_intersection.hpp"
 
@@ -89,6 +90,7 @@ double area_of(const TriangleMesh& mesh) {
 }
 
 MeshReport examine(const TriangleMesh& mesh, bool thorough) {
+  VERISIM_ASSERT(is_whole(mesh));
   MeshReport report;
   for (const Vector3d& p : mesh.vertices) report.not_finite = report.not_finite || !p.allFinite();
   if (report.not_finite) return report;

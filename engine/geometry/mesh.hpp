@@ -1,6 +1,7 @@
 // Triangle meshes: the tessellated representation of a part. Part coordinates [m].
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -30,6 +31,15 @@ struct Bounds {
   [[nodiscard]] Vector3d size() const { return max - min; }
   [[nodiscard]] Vector3d center() const { return 0.5 * (min + max); }
 };
+
+/// Does the mesh hang together: are all corners of triangles vertices, and do all triangles or none know their face?
+/// What everything that takes a mesh relies on; readers of files see to it.
+[[nodiscard]] inline bool is_whole(const TriangleMesh& mesh) {
+  for (const auto& triangle : mesh.triangles) {
+    if (std::max({triangle[0], triangle[1], triangle[2]}) >= mesh.vertices.size()) return false;
+  }
+  return mesh.face_of_triangle.empty() || mesh.face_of_triangle.size() == mesh.triangles.size();
+}
 
 [[nodiscard]] Bounds bounds_of(const TriangleMesh& mesh);
 
@@ -68,9 +78,10 @@ struct MeshReport {
 /// Ends of open edges within the same distance become one. Wider gaps stay open. Every repair is one sentence in
 /// `notes`.
 /// @returns the report of the mesh as it is afterwards.
+/// @pre is_whole(mesh)
 MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes);
 
-/// The report alone. Self-intersections are looked for if `thorough` (n log n; CGAL).
+/// The report alone. Self-intersections are looked for if `thorough` (n log n; CGAL). @pre is_whole(mesh)
 [[nodiscard]] MeshReport examine(const TriangleMesh& mesh, bool thorough);
 
 }  // namespace verisim

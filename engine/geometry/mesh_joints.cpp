@@ -4,6 +4,9 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -14,6 +17,8 @@ class Ends {
     Bounds bounds;
     for (const Side& side : open) {
       for (const std::uint32_t end : {side.low, side.high}) {
+        VERISIM_ASSERT(end < mesh.vertices.size());
+        VERISIM_ASSERT(is_finite(mesh.vertices[end]));
         bounds.include(mesh.vertices[end]);
         sorted_.push_back(end);
       }
@@ -86,6 +91,7 @@ std::vector<Side> open_sides(const TriangleMesh& mesh) {
 }
 
 std::size_t join_near_corners(TriangleMesh& mesh, const std::vector<Side>& open, double tolerance) {
+  VERISIM_ASSERT(is_not_negative(tolerance));
   const Ends ends(mesh, open);
   std::vector<std::uint32_t> becomes(mesh.vertices.size());
   std::iota(becomes.begin(), becomes.end(), 0U);
@@ -109,6 +115,8 @@ std::size_t join_near_corners(TriangleMesh& mesh, const std::vector<Side>& open,
 }
 
 std::size_t cut_at_joints(TriangleMesh& mesh, const std::vector<Side>& open, double tolerance) {
+  VERISIM_ASSERT(is_not_negative(tolerance));
+  for (const Side& side : open) VERISIM_ASSERT(side.triangle < mesh.triangles.size());
   const Ends ends(mesh, open);
   std::vector<Cut> cuts(mesh.triangles.size());
   std::size_t count = 0;

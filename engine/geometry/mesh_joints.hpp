@@ -8,6 +8,9 @@
 
 namespace verisim {
 
+// Of the two that close: @pre `open` is open_sides(mesh), of the mesh as it is; vertices are finite; the tolerance is
+// finite and not negative.
+
 /// The sides without a second triangle, in the order of sorted_sides. Only they and their ends take part in the
 /// closing: a closed mesh stays as it is, however fine its details.
 [[nodiscard]] std::vector<Side> open_sides(const TriangleMesh& mesh);

@@ -261,6 +261,7 @@ void close_joints(TriangleMesh& mesh, std::vector<std::string>& notes) {
 }  // namespace
 
 MeshReport repair(TriangleMesh& mesh, std::vector<std::string>& notes) {
+  VERISIM_ASSERT(is_whole(mesh));
   MeshReport report = examine(mesh, false);
   if (report.not_finite) return report;  // nothing can be decided about such a mesh
   weld(mesh);

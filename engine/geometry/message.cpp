@@ -128,7 +128,10 @@ std::vector<NamedArray> tables_of(const Solid& solid) {
   std::vector<double> sizes;
   std::vector<double> placements;  // 7 a node: position, then quaternion x y z w
   const std::function<void(const Solid&)> visit = [&](const Solid& node) {
-    for (const auto& child : node.children) visit(*child);
+    for (const auto& child : node.children) {
+      VERISIM_ASSERT(child != nullptr);
+      visit(*child);
+    }
     kinds.push_back(static_cast<std::uint8_t>(node.kind));
     size_counts.push_back(static_cast<std::uint32_t>(node.sizes.size()));
     child_counts.push_back(static_cast<std::uint32_t>(node.children.size()));

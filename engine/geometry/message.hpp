@@ -32,7 +32,7 @@ using Message = std::vector<Group>;
 [[nodiscard]] double number_of(const Group& group, std::string_view name);
 [[nodiscard]] NamedArray number_table(std::string name, double value);
 
-/// A solid's tree in post-order, and back.
+/// A solid's tree in post-order, and back. @pre no child is null
 [[nodiscard]] std::vector<NamedArray> tables_of(const Solid& solid);
 [[nodiscard]] Solid solid_from(const Group& group);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/geometry/loader.hpp"
 
 namespace verisim {
@@ -28,6 +30,7 @@ std::vector<double> radii(const Part& part, bool holes) {
 }  // namespace
 
 std::vector<Mate> mating_candidates(const std::vector<Part>& parts, double tolerance) {
+  VERISIM_ASSERT(is_not_negative(tolerance));
   std::vector<Mate> mates;
   for (const Part& a : parts) {
     const std::vector<double> holes = radii(a, true);

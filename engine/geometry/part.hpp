@@ -34,11 +34,12 @@ struct Mate {
 };
 
 /// All pairs (hole, pin) of two different parts whose radii differ by at most `tolerance` (relative to the hole's),
-/// ordered by clearance, then part names. Equal rows are listed once.
+/// ordered by clearance, then part names. Equal rows are listed once. @pre tolerance is finite and not negative
 [[nodiscard]] std::vector<Mate> mating_candidates(const std::vector<Part>& parts, double tolerance = 0.15);
 
 /// A part as tables (vertices, triangles, faces, edges, mass …) and back: what a run file embeds, so that `replay`
-/// needs no CAD kernel. Round trip is exact to the bit.
+/// needs no CAD kernel. Round trip is exact to the bit. Error(input) for tables that do not fit together.
+/// @pre is_whole(part.mesh)
 [[nodiscard]] std::vector<NamedArray> to_tables(const Part& part);
 [[nodiscard]] Part from_tables(const std::string& name, const std::vector<NamedArray>& tables);
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <type_traits>
 
+#include "engine/base/error.hpp"
 #include "engine/geometry/entity_row.hpp"
 #include "engine/geometry/part.hpp"
 
@@ -230,6 +231,7 @@ std::vector<std::string> lines_of(const std::vector<std::uint8_t>& bytes) {
 }  // namespace
 
 std::vector<NamedArray> to_tables(const Part& part) {
+  VERISIM_ASSERT(is_whole(part.mesh));
   Writer w;
   add_mesh(w, part.mesh);
   add_faces(w, part.faces);

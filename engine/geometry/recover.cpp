@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
 #include "engine/geometry/recover/region_edges.hpp"
 #include "engine/geometry/recover/region_faces.hpp"
@@ -41,6 +43,11 @@ bool are_mostly_curved(const recover::CanonicalMesh& mesh, const std::vector<rec
   return round >= other;
 }
 
+std::vector<recover::Region> find_regions(const recover::CanonicalMesh& mesh, double tolerance,
+                                          const RecoverOptions& options) {
+  return recover::find_regions(mesh, tolerance, options.round_step_max, options.thresholds);
+}
+
 struct Segmentation {
   std::vector<recover::Region> regions;
   double tolerance = 0;
@@ -49,10 +56,10 @@ struct Segmentation {
 /// Segmentation with the smallest tolerance, unless a larger one halves the description length. Too small a tolerance
 /// breaks surfaces into pieces; too large a one finds surfaces where there are none. A larger one is not tried if most
 /// of the area that is not flat is on surfaces: then the rest is a free form.
-Segmentation best_segmentation(const recover::CanonicalMesh& mesh, double extent, double round_step) {
+Segmentation best_segmentation(const recover::CanonicalMesh& mesh, double extent, const RecoverOptions& options) {
   Segmentation best;
   for (const double usual : kUsualTolerances) {
-    Segmentation next{recover::find_regions(mesh, usual * extent, round_step), usual * extent};
+    Segmentation next{find_regions(mesh, usual * extent, options), usual * extent};
     if (best.tolerance == 0 || 2 * description_length(next.regions) < description_length(best.regions))
       best = std::move(next);
     if (are_mostly_curved(mesh, best.regions)) break;
@@ -74,11 +81,16 @@ std::string note_on(const Part& part) {
 
 void recover_brep(Part& part, const RecoverOptions& options) {
   VERISIM_ASSERT(!part.has_brep());
+  VERISIM_ASSERT(is_whole(part.mesh));
+  for (const Vector3d& v : part.mesh.vertices) VERISIM_ASSERT(is_finite(v));
+  VERISIM_ASSERT(is_not_negative(options.tolerance));
+  VERISIM_ASSERT(options.round_step_max > 0);
+  VERISIM_ASSERT(options.round_step_max < pinned::kPi);
   if (part.mesh.triangles.empty()) return;
   const recover::CanonicalMesh mesh = recover::canonical(part.mesh);
-  const double given = options.tolerance, step = options.round_step_max;
-  const auto [regions, tolerance] = given > 0 ? Segmentation{recover::find_regions(mesh, given, step), given}
-                                              : best_segmentation(mesh, extent_of(part.mesh), step);
+  const double given = options.tolerance;
+  const auto [regions, tolerance] = given > 0 ? Segmentation{find_regions(mesh, given, options), given}
+                                              : best_segmentation(mesh, extent_of(part.mesh), options);
   std::vector<std::uint32_t> face_of(mesh.triangles.size(), kNoFace);
   for (std::uint32_t r = 0; r < regions.size(); ++r) {
     part.faces.push_back(recover::face_of(mesh, regions[r]));

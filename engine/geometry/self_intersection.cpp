@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/geometry/mesh_edges.hpp"
 
 namespace verisim {
@@ -91,6 +93,8 @@ std::vector<Box> boxes_of(const TriangleMesh& mesh) {
 }  // namespace
 
 SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
+  VERISIM_ASSERT(is_whole(mesh));
+  for (const Vector3d& v : mesh.vertices) VERISIM_ASSERT(is_finite(v));
   const Crossings crossings(mesh);
   SelfIntersections found;
   std::pair<std::uint32_t, std::uint32_t> first = {kNoFace, kNoFace};

@@ -15,7 +15,7 @@ struct SelfIntersections {
 /// count, nor do slivers that rounding or tessellation pushed over a rim. Two of the recorded models have hundreds of
 /// those; they hardly change the volume. Degenerate triangles are left out: they have no plane. n log n: 30,000
 /// triangles take about 0.1 s.
-/// @pre all vertices finite
+/// @pre is_whole(mesh), all vertices finite
 [[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh);
 
 }  // namespace verisim

@@ -151,6 +151,7 @@ Reservation::~Reservation() {
 }
 
 void Reservation::ensure(std::uint64_t bytes, std::uint64_t step) {
+  VERISIM_ASSERT(step > 0);
   struct stat info {};
   if (::fstat(descriptor_, &info) != 0) refuse(path_);
   const auto size = static_cast<std::uint64_t>(info.st_size);

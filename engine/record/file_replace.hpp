@@ -71,6 +71,7 @@ class Reservation {
   Reservation(const Reservation&) = delete;
   Reservation& operator=(const Reservation&) = delete;
   /// Ensures that the file can grow by `bytes`. Error(io). Usually one fstat; reserves in steps of `step`.
+  /// @pre step > 0
   void ensure(std::uint64_t bytes, std::uint64_t step);
 
  private:

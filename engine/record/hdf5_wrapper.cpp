@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "engine/base/error.hpp"
+
 #if defined(__SANITIZE_ADDRESS__)
 // HDF5 1.10 forgets some memory when it refuses a damaged file; that would hide what this program forgets.
 extern "C" const char* __lsan_default_suppressions() {
@@ -250,6 +252,7 @@ Handle write_array(hid_t location, const std::string& path, Dtype dtype, const S
       check(H5Dcreate2(location, path.c_str(), stored_type(dtype), space, links, creation, H5P_DEFAULT), path.c_str()),
       H5Dclose);
   if (H5Sget_simple_extent_npoints(space) > 0) {
+    VERISIM_ASSERT(data != nullptr);
     check_status(H5Dwrite(dataset, memory_type(dtype), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path.c_str());
   }
   write_attribute(dataset, "units", units);

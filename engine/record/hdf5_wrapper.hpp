@@ -88,6 +88,7 @@ using Shape = std::vector<hsize_t>;
 [[nodiscard]] Shape checked_shape(hid_t dataset, std::size_t element_bytes);
 
 /// A dataset of fixed shape with `units` and `description`, written whole; left open for further attributes.
+/// @pre there is data, unless the shape holds nothing
 Handle write_array(hid_t location, const std::string& path, Dtype dtype, const Shape& shape, const void* data,
                    const std::string& units, const std::string& description);
 

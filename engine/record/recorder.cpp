@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <thread>
 
@@ -79,6 +80,8 @@ struct Recorder::Implementation {
   }
 
   void event(double time, std::string_view kind, std::string_view text) {
+    VERISIM_ASSERT(std::isfinite(time));
+    VERISIM_ASSERT(!kind.empty());
     if (!event_fits()) {
       ++events_lost_;
       return;

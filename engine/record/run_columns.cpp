@@ -68,6 +68,17 @@ std::vector<std::uint32_t> due_counts(hid_t file, const std::vector<StoredColumn
   return counts;
 }
 
+/// The state of a row is one run of bytes: Schema relies on it.
+void check_order(const std::vector<StoredColumn>& columns) {
+  bool state = true;
+  for (const StoredColumn& stored : columns) {
+    const std::string& path = stored.column.path;
+    const bool is_state = path.starts_with("/state/") && path != "/state/hash";
+    if (is_state && !state) throw hdf5::Failure(path + ": stands behind columns that are not state");
+    state = is_state;
+  }
+}
+
 }  // namespace
 
 std::vector<StoredColumn> read_columns(hid_t file) {
@@ -83,6 +94,7 @@ std::vector<StoredColumn> read_columns(hid_t file) {
   if (static_cast<std::int64_t>(columns.size()) != promised || columns.size() != found.size()) {
     throw hdf5::Failure("of " + std::to_string(promised) + " columns " + std::to_string(found.size()) + " are there");
   }
+  check_order(columns);
   return columns;
 }
 

@@ -25,6 +25,7 @@ namespace verisim {
 class Schema {
  public:
   /// Returns the column's index. Throws Error(input) if the path exists already (two bodies of one name).
+  /// @pre the path begins with '/'; width > 0; /state columns come before all others, /state/hash excepted
   std::size_t add(Column column);
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }
@@ -83,10 +84,12 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  /// @pre no row is open, close() has not been called
   /// The next row to fill, schema.row_bytes() long, zeroed. May wait (free-running only). No allocation.
   /// Throws Error(io) if the writer has failed (disk full …).
   [[nodiscard]] std::span<std::byte> begin_row();
-  void end_row();
+  void end_row();  ///< @pre a row is open
+  /// @pre the time is finite, the kind is not empty
   /// No allocation: copied into a fixed ring. If that is full, the loop waits (free-running: what a file holds must not
   /// depend on the disk); paced, events are counted and close() writes one "events lost".
   void event(double time, std::string_view kind, std::string_view text);

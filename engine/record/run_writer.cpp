@@ -214,6 +214,7 @@ void RunWriter::reserve(std::size_t rows, std::size_t events) {
 }
 
 void RunWriter::append(const std::byte* rows, std::size_t count) {
+  VERISIM_ASSERT(rows != nullptr || count == 0);
   const hdf5::Session session;
   guard([&] {
     for (Stored& stored : columns_) {
@@ -249,6 +250,7 @@ std::size_t RunWriter::pack(const Stored& stored, const std::byte* rows, std::si
 }
 
 void RunWriter::append(const StoredEvent* events, std::size_t count) {
+  VERISIM_ASSERT(events != nullptr || count == 0);
   const hdf5::Session session;
   guard([&] { append_values(event_dataset_, event_type_, 1, events_, count, events); });
   events_ += count;

@@ -43,6 +43,7 @@ class RunWriter {
   /// Ensures disk space for an append and a flush. An Error from here leaves a consistent file.
   void reserve(std::size_t rows, std::size_t events);
   /// Appends `count` rows that lie one after the other. About 4 us a column and 10 ns a value.
+  /// @pre rows (or events) are there, if there are any
   void append(const std::byte* rows, std::size_t count);
   void append(const StoredEvent* events, std::size_t count);
   /// Flushes all appended data in an order that survives a kill. The first flush with a row gives the file its name.

@@ -4,6 +4,7 @@
 namespace verisim {
 
 std::size_t Schema::add(Column column) {
+  VERISIM_ASSERT(column.path.starts_with('/'));
   VERISIM_ASSERT(column.width > 0);
   for (const Column& other : columns_) {
     if (other.path == column.path) {

@@ -17,6 +17,7 @@ Trace parse_trace(const std::string& name, const std::string& content, const std
 
 void write_trace(const std::string& path, const Trace& trace) {
   VERISIM_ASSERT(!trace.columns.empty());
+  VERISIM_ASSERT(trace.values.size() % trace.columns.size() == 0);
   Replacement file(path, ".part");
   if (path.ends_with(".csv")) {
     file.write(trace_as_csv(trace));

@@ -42,7 +42,7 @@ struct TraceLimits {
 
 /// Writes CSV or HDF5, by the extension of `path` (.csv, .h5), in one step: never half a file. What is read back is
 /// equal to the bit; CSV numbers are the shortest that say so (at most 17 digits). Error(io); Error(usage) for another
-/// extension.
+/// extension. @pre the trace has columns, and a value of each for every row
 void write_trace(const std::string& path, const Trace& trace);
 
 /// One mapping of `trace convert`: target column = scale * source column + offset.

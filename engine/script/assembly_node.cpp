@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim::script {
@@ -82,6 +83,7 @@ const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, doub
 }
 
 Part placed(const Part& part, const Pose& X) {
+  VERISIM_ASSERT(is_placement(X));
   Part result = part;
   const Placer place{X};
   for (Vector3d& p : result.mesh.vertices) place.point(p);
@@ -97,6 +99,8 @@ Part placed(const Part& part, const Pose& X) {
 }
 
 std::shared_ptr<const Solid> scaled(const std::shared_ptr<const Solid>& solid, double scale) {
+  VERISIM_ASSERT(solid != nullptr);
+  VERISIM_ASSERT(scale > 0);
   if (scale == 1) return solid;
   auto result = std::make_shared<Solid>(*solid);
   for (double& size : result->sizes) size *= scale;
@@ -121,6 +125,9 @@ PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inp
   for (const auto& node : nodes) gatherer.visit(*node, 1, Pose{}, 1);
   const std::vector<Leaf>& leaves = gatherer.leaves;
   if (leaves.empty()) fail(ErrorKind::input, "the object has no geometry; give it a Model or a Solid");
+  for (const Leaf& leaf : leaves)
+    if (!is_placement(leaf.pose))
+      fail(ErrorKind::input, "the object's transforms take it beyond all numbers; give smaller positions and scales");
   PlacedParts result;
   bool one_placement = true;
   for (const Leaf& leaf : leaves) one_placement = one_placement && same(leaf.pose, leaves.front().pose);

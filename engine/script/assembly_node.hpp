@@ -73,9 +73,10 @@ inline constexpr int kNodeDepthMax = 100;
 [[nodiscard]] const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale, bool recover);
 
 /// A part in other coordinates: every point p becomes X * p. Area, volume and trimmed bounds do not change.
+/// @pre X is finite, its rotation unit
 [[nodiscard]] Part placed(const Part& part, const Pose& X);
 
-/// The solid with all lengths times `scale`.
+/// The solid with all lengths times `scale`. @pre there is one, and so its children; scale is above 0
 [[nodiscard]] std::shared_ptr<const Solid> scaled(const std::shared_ptr<const Solid>& solid, double scale);
 
 }  // namespace verisim::script

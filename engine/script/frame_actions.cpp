@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/script/script_state.hpp"
 
 namespace verisim::script {
 
 std::uint64_t FrameActions::add(lua_State* L, int index) {
+  VERISIM_ASSERT(lua_isfunction(L, index));
   if (actions_.size() >= kActionsMax) raise(L, "there are {} frame actions already; let some end first", kActionsMax);
   lua_pushvalue(L, index);  // first, since a negative index counts from the top
   lua_State* thread = lua_newthread(L);
@@ -33,6 +36,8 @@ bool FrameActions::remove(std::uint64_t id) {
 }
 
 void FrameActions::update(double rate) {
+  VERISIM_ASSERT(is_positive(rate));
+  VERISIM_ASSERT(running_ == nullptr);
   // Actions that are added meanwhile are inserted between these and wait for the next script frame.
   std::vector<Action*> due;
   due.reserve(actions_.size());

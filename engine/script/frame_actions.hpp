@@ -21,6 +21,7 @@ class FrameActions {
   explicit FrameActions(ScriptState& state) : state_(state) {}
 
   /// The function at `index` of L becomes an action. Raises if there are kActionsMax already.
+  /// @pre there is a function at `index`
   std::uint64_t add(lua_State* L, int index);
   /// False if the action has ended or was removed.
   bool remove(std::uint64_t id);

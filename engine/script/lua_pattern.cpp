@@ -60,6 +60,8 @@ PatternMatcher::PatternMatcher(std::string_view subject, std::string_view patter
 }
 
 std::ptrdiff_t PatternMatcher::match_at(std::ptrdiff_t start) {
+  VERISIM_ASSERT(start >= 0);
+  VERISIM_ASSERT(start <= static_cast<std::ptrdiff_t>(subject_.size()));
   captures_.clear();
   depth_ = 0;
   return match(start, 0);

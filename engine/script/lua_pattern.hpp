@@ -18,6 +18,7 @@ class PatternMatcher {
   PatternMatcher(std::string_view subject, std::string_view pattern, std::uint64_t steps_max);
 
   /// Matches the pattern exactly at `start`. Throws Error(input): malformed pattern, too many captures, too many steps.
+  /// @pre 0 <= start <= the subject's length
   /// @returns the end of the match, or -1.
   [[nodiscard]] std::ptrdiff_t match_at(std::ptrdiff_t start);
   /// Does the pattern begin with '^'?

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/error.hpp"
+
 namespace verisim::script {
 namespace {
 
@@ -167,6 +169,8 @@ std::optional<LuaFailure> Sandbox::load(lua_State* L, const std::string& chunk_n
 
 std::optional<LuaFailure> Sandbox::call(lua_State* L, int arguments, int results) {
   const int function = lua_gettop(L) - arguments;
+  VERISIM_ASSERT(arguments >= 0);
+  VERISIM_ASSERT(function >= 1);
   lua_pushcfunction(L, describe_error_safely);
   lua_insert(L, function);
   const int status = lua_pcall(L, arguments, results, function);
@@ -177,6 +181,7 @@ std::optional<LuaFailure> Sandbox::call(lua_State* L, int arguments, int results
 }
 
 Sandbox::Resumed Sandbox::resume(lua_State* thread, int arguments, LuaFailure& failure) {
+  VERISIM_ASSERT(arguments <= lua_gettop(thread));
   const int status = lua_resume(thread, arguments);
   if (status == LUA_YIELD) return Resumed::yielded;
   if (status == 0) return Resumed::ended;

@@ -45,8 +45,9 @@ class Sandbox {
   /// Compiles text (never bytecode) and leaves the function on L's stack; on failure leaves nothing.
   std::optional<LuaFailure> load(lua_State* L, const std::string& chunk_name, const std::string& content);
   /// Calls the function below its `arguments` on L's stack. On failure leaves nothing on the stack.
+  /// @pre they are there: a function and its arguments
   std::optional<LuaFailure> call(lua_State* L, int arguments, int results);
-  /// Resumes a coroutine with the arguments on its stack.
+  /// Resumes a coroutine with the arguments on its stack. @pre they are there
   enum class Resumed { ended, yielded, failed };
   Resumed resume(lua_State* thread, int arguments, LuaFailure& failure);
 

@@ -33,9 +33,10 @@ class Scenario {
   Scenario(const ScenarioOptions& options, Inputs& inputs);
   ~Scenario();
 
-  /// The scene as described. Moved out: once.
+  /// The scene as described. @pre not taken before
   [[nodiscard]] Scene take_scene();
   /// Binds the script's objects to the running simulation and registers its frame clock (60 Hz of simulated time).
+  /// @pre the simulation is of take_scene()'s scene; not attached before
   void attach(Simulation& simulation);
 
   [[nodiscard]] std::string parameters_json() const;  ///< all params{} as resolved

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/assembly_node.hpp"
@@ -64,7 +65,10 @@ class ScriptState : public Sandbox {
   void report_failure(const std::string& what, const LuaFailure& failure);
 
   /// The description of a body while the scene is built.
-  [[nodiscard]] BodyDescription& described_body(std::size_t body) { return scene.bodies[body]; }
+  [[nodiscard]] BodyDescription& described_body(std::size_t body) {
+    VERISIM_ASSERT(body < scene.bodies.size());
+    return scene.bodies[body];
+  }
   [[nodiscard]] double time() const { return simulation == nullptr ? 0 : simulation->time(); }
 
   // Sandbox

@@ -177,7 +177,9 @@ int say_measure(lua_State* L) {
 int say_event(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   state.charge(L, kEventWork);
-  state.event(text_at(L, 1, "event: the kind"), text_at(L, 2, "event: the text"));
+  const std::string kind = text_at(L, 1, "event: the kind");
+  if (kind.empty()) raise(L, "event: the kind is an empty text; name what happened in a word or two");
+  state.event(kind, text_at(L, 2, "event: the text"));
   return 0;
 }
 

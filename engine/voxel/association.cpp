@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/edge_cells.hpp"
 #include "engine/voxel/parallel.hpp"
 #include "engine/voxel/prepared_faces.hpp"
@@ -337,6 +338,13 @@ AssociationReport associate_part(const Part& part, unsigned threads, VoxelBody& 
 
 AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
                             VoxelBody& body) {
+  VERISIM_ASSERT(body.voxmap.surface_count > 0);
+  for (const Face& face : part.faces) {
+    for (const std::uint32_t edge : face.edges) VERISIM_ASSERT(edge < part.edges.size());
+  }
+  for (const Edge& edge : part.edges) {
+    for (const std::uint32_t face : edge.faces) VERISIM_ASSERT(face < part.faces.size());
+  }
   body.features = entities_of(name, part, options);
   body.shell.features.assign(body.voxmap.surface_count, 0);
   const AssociationReport report = part.has_brep() ? associate_part(part, options.threads, body)

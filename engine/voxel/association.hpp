@@ -33,7 +33,8 @@ struct AssociationReport {
 /// order of the first surface voxel that has them, after those declared. 0.07 to 0.2 us per surface voxel. A part
 /// without b-rep has the declared sets alone. Throws Error(input) starting with `name` if the part has more different
 /// sets than options allow.
-/// @pre body was voxelized from part.mesh; what is declared was assigned to a body of the same voxels
+/// @pre body was voxelized from part.mesh, which has a face for every triangle or the part no b-rep; faces name edges
+/// and edges faces of the part; what is declared was assigned to a body of the same voxels
 AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
                             VoxelBody& body);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim {
@@ -57,9 +58,16 @@ void for_each_entry(const GridMesh& mesh, const Eigen::Vector3i& bricks, double 
   }
 }
 
+/// Does the corner lie inside the grid, farther than the margin from its walls? False for one that is not finite.
+bool lies_within(const Vector3d& corner, const Eigen::Vector3i& bricks, double margin) {
+  const Vector3d size = (kBrickSide * bricks).cast<double>();
+  return (corner.array() > margin).all() && (corner.array() < size.array() - margin).all();
+}
+
 }  // namespace
 
 GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map) {
+  VERISIM_ASSERT(is_positive(map.voxel_size));
   GridMesh result{.vertices = {}, .triangles = &mesh.triangles};
   result.vertices.reserve(mesh.vertices.size());
   for (const Vector3d& p_B : mesh.vertices) result.vertices.push_back((p_B - map.origin) / map.voxel_size);
@@ -68,6 +76,13 @@ GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map) {
 
 // Two passes, the first to count: the lists get their exact size and need no sorting.
 BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks, double margin) {
+  VERISIM_ASSERT(is_not_negative(margin));
+  for (const auto& triangle : *mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      VERISIM_ASSERT(corner < mesh.vertices.size());
+      VERISIM_ASSERT(lies_within(mesh.vertices[corner], bricks, margin));
+    }
+  }
   BrickLists lists;
   const auto count = static_cast<std::size_t>(bricks.cast<std::int64_t>().prod());
   lists.begin.assign(count + 1, 0);

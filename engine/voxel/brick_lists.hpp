@@ -21,7 +21,7 @@ struct GridMesh {
   }
 };
 
-/// The mesh in the grid coordinates of a map.
+/// The mesh in the grid coordinates of a map. @pre the map has a voxel size
 [[nodiscard]] GridMesh in_grid_coordinates(const TriangleMesh& mesh, const Voxmap& map);
 
 /// For every brick the triangles, ascending, that touch it (grown by a margin; a few more may be listed).
@@ -35,7 +35,8 @@ struct BrickLists {
 };
 
 /// @param margin  by how much bricks are grown [voxel]
-/// @pre every vertex lies within the grid of `bricks` bricks, and farther than the margin from its walls
+/// @pre every corner of a triangle lies within the grid of `bricks` bricks, and farther than the margin from its walls;
+/// margin >= 0
 [[nodiscard]] BrickLists list_triangles_by_brick(const GridMesh& mesh, const Eigen::Vector3i& bricks,
                                                  double margin = kCandidateMargin);
 

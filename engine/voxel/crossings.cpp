@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 namespace {
@@ -41,6 +43,10 @@ std::optional<Crossing> cross(const std::array<Vector3d, 3>& corners, double y, 
 
 int winding_change(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks,
                    const Eigen::Vector3i& from, int to_x) {
+  VERISIM_ASSERT((from.array() >= 0).all());
+  VERISIM_ASSERT((from.array() < kBrickSide * bricks.array()).all());
+  VERISIM_ASSERT(from.x() <= to_x);
+  VERISIM_ASSERT(to_x < kBrickSide * bricks.x());
   const double y = from.y() + 0.5, z = from.z() + 0.5;
   int change = 0;
   for (int bx = from.x() / kBrickSide; bx <= to_x / kBrickSide; ++bx) {

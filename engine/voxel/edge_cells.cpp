@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/voxel/brick_lists.hpp"
 #include "engine/voxel/surface.hpp"
 
@@ -86,6 +88,9 @@ class Walk {
 EdgeLists::EdgeLists(const std::vector<GridCurve>& curves, const std::vector<double>& distances,
                      const Eigen::Vector3i& bricks, const std::vector<std::uint32_t>& entry_of_brick,
                      std::size_t entries) {
+  VERISIM_ASSERT(distances.size() == curves.size());
+  VERISIM_ASSERT(std::ranges::all_of(distances, is_not_negative));
+  VERISIM_ASSERT(entry_of_brick.size() == static_cast<std::size_t>(bricks.cast<std::int64_t>().prod()));
   Walk walk(bricks, entry_of_brick);
   for (std::uint32_t edge = 0; edge < curves.size(); ++edge) walk.follow(curves[edge], edge, distances[edge]);
   std::ranges::sort(walk.cells, {}, key);

@@ -23,6 +23,7 @@ class EdgeLists {
  public:
   /// @param entry_of_brick  a brick's index among those with surface voxels, or kNoSurface
   /// @param distances       for each edge: how far `near` reaches [voxel]
+  /// @pre a distance for each curve, finite and not negative; an entry for each brick
   /// About 0.1 us per voxel length of edge, more where `distances` are large.
   EdgeLists(const std::vector<GridCurve>& curves, const std::vector<double>& distances, const Eigen::Vector3i& bricks,
             const std::vector<std::uint32_t>& entry_of_brick, std::size_t entries);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/geometry/entity.hpp"
 
 namespace verisim {
@@ -28,6 +29,7 @@ class FeatureSets {
 
   /// @param owner  the body's name in errors
   /// @param most   largest number of sets besides the empty set, up to kMostSets
+  /// @pre most <= kMostSets
   explicit FeatureSets(std::string owner = {}, std::size_t most = kMostSets);
 
   /// The number of the set with these entities; a new set gets the next number. About 20 ns.
@@ -41,6 +43,7 @@ class FeatureSets {
   /// Entities of a set, ascending. Valid until the next intern().
   /// @pre id < size()
   [[nodiscard]] std::span<const EntityNumber> operator[](FeatureSetId id) const {
+    VERISIM_ASSERT(id < size());
     return {entities_.data() + begin_[id], begin_[id + std::size_t{1}] - begin_[id]};
   }
 

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/voxel/overlap.hpp"
 #include "engine/voxel/voxelize.hpp"
 
@@ -46,6 +48,10 @@ AxisPlacement place(double extent) {
 }  // namespace
 
 Vector3d grid_origin(const Bounds& bounds, double voxel_size, Eigen::Vector3i& bricks) {
+  VERISIM_ASSERT(is_finite(bounds.min));
+  VERISIM_ASSERT(is_finite(bounds.max));
+  VERISIM_ASSERT((bounds.min.array() <= bounds.max.array()).all());
+  VERISIM_ASSERT(is_positive(voxel_size));
   Vector3d origin;
   for (int axis = 0; axis < 3; ++axis) {
     const AxisPlacement placement = place(bounds.size()[axis] / voxel_size);

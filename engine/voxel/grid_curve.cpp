@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 
@@ -33,6 +35,9 @@ bool segment_passes(const Vector3d& p, const Vector3d& q, const GridBox& box) {
 }  // namespace
 
 GridCurve::GridCurve(const Edge& edge, const Matrix3d& axes, const Vector3d& origin, double scale) {
+  VERISIM_ASSERT(is_positive(scale));
+  VERISIM_ASSERT(axes.allFinite());
+  VERISIM_ASSERT(is_finite(origin));
   const auto placed = [&](const Vector3d& p) { return Vector3d(scale * (axes * (p - origin))); };
   const auto set_arc = [&](const Vector3d& center, const Vector3d& normal, const Vector3d& x_axis, double major,
                            double minor) {

@@ -30,6 +30,7 @@ struct PlaneCrossing {
 class GridCurve {
  public:
   /// Transforms an edge's curve: p -> axes (p - origin) * scale. A freeform edge is its polyline.
+  /// @pre scale is finite and above 0; axes and origin are finite
   GridCurve(const Edge& edge, const Matrix3d& axes, const Vector3d& origin, double scale);
 
   /// True if the curve passes through the closed box. 10 ns for a line, 100 ns for an arc.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/parallel.hpp"
 
 namespace verisim {
@@ -154,6 +155,8 @@ BrickMask inside_of(const SurfaceVoxels& surface, const Sides& sides, std::size_
 }  // namespace
 
 std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map) {
+  VERISIM_ASSERT(surface.cells.size() == surface.brick.size());
+  VERISIM_ASSERT(sides.brick.size() == surface.entry.size());
   constexpr std::uint32_t kOwn = 2;
   map.brick_block.resize(surface.entry.size());
   for (std::size_t brick = 0; brick < map.brick_block.size(); ++brick) {
@@ -178,6 +181,9 @@ std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxm
 }
 
 void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t blocks, unsigned threads, Voxmap& map) {
+  VERISIM_ASSERT(sides.inside.size() == surface.brick.size());
+  VERISIM_ASSERT(map.brick_block.size() == surface.entry.size());
+  VERISIM_ASSERT(blocks >= 2);  // the two shared ones
   std::vector<std::uint32_t> brick_of_block(blocks);
   map.first_surface.assign(blocks, {});
   map.surface_mask.assign(blocks, BrickMask{});
@@ -214,6 +220,8 @@ void fill_blocks(const SurfaceVoxels& surface, const Sides& sides, std::size_t b
 // Chebyshev distance by two sweeps over the 13 neighbours that come before, and the 13 that come after: exact for this
 // metric, since the moves of a shortest path can be ordered that way.
 void fill_clearance(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map) {
+  VERISIM_ASSERT(sides.brick.size() == surface.entry.size());
+  VERISIM_ASSERT(surface.entry.size() == static_cast<std::size_t>(surface.bricks.cast<std::int64_t>().prod()));
   constexpr int kFar = 127;
   const Eigen::Vector3i& n = surface.bricks;
   std::vector<Layer>& distance = map.brick_clearance;

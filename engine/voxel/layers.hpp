@@ -6,6 +6,8 @@
 
 namespace verisim {
 
+// Of all three: @pre `sides` is what find_sides says of `surface`, `map` what assign_blocks made of both.
+
 /// Gives a block to every brick within kBand of a surface voxel, in brick order, and kOutsideBlock or kInsideBlock to
 /// the others. Fills brick_block. @returns the number of blocks, including these two
 [[nodiscard]] std::size_t assign_blocks(const SurfaceVoxels& surface, const Sides& sides, Voxmap& map);

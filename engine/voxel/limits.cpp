@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/voxel/brick_mask.hpp"
 
@@ -64,6 +65,7 @@ MemoryEstimate::MemoryEstimate(const TriangleMesh& mesh, const Bounds& bounds) :
 }
 
 double MemoryEstimate::bytes(double voxel_size) const {
+  VERISIM_ASSERT(voxel_size > 0);
   const double voxels = projected_area_ / (voxel_size * voxel_size);
   // Blocks are the bricks within the band: a layer one brick and twice the band thick.
   const double blocks = voxels * (kBrickSide + 2 * kBand) / kBrickCells + 2;
@@ -72,6 +74,7 @@ double MemoryEstimate::bytes(double voxel_size) const {
 }
 
 double MemoryEstimate::smallest_size(double limit) const {
+  VERISIM_ASSERT(is_positive(size_.maxCoeff()));
   double low = 0, high = size_.maxCoeff();
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);

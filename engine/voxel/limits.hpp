@@ -16,8 +16,8 @@ namespace verisim {
 class MemoryEstimate {
  public:
   MemoryEstimate(const TriangleMesh& mesh, const Bounds& bounds);
-  [[nodiscard]] double bytes(double voxel_size) const;
-  /// The smallest voxel size, rounded up to two digits, whose estimate is within the limit.
+  [[nodiscard]] double bytes(double voxel_size) const;  ///< @pre voxel_size > 0
+  /// The smallest voxel size, rounded up to two digits, whose estimate is within the limit. @pre the mesh is no point
   [[nodiscard]] double smallest_size(double limit) const;
 
  private:

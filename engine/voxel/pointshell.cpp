@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/voxel/normals.hpp"
 #include "engine/voxel/parallel.hpp"
 
@@ -39,6 +41,10 @@ Pointshell::Cluster cluster_of(const Pointshell& shell, std::uint32_t begin, std
 
 Pointshell make_pointshell(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface,
                            const Voxmap& map, const Vector3d& reference, unsigned threads) {
+  VERISIM_ASSERT(map.surface_count == surface.voxels);
+  VERISIM_ASSERT(map.brick_block.size() == surface.entry.size());
+  VERISIM_ASSERT(lists.begin.size() == surface.entry.size() + 1);
+  VERISIM_ASSERT(is_finite(reference));
   Pointshell shell;
   shell.reference = reference;
   resize(shell, map.surface_count);
@@ -102,6 +108,9 @@ std::array<int, 4> cell_of(const Candidate& c) {
 }  // namespace
 
 Pointshell thinned(const Pointshell& shell, const Voxmap& map, double spacing) {
+  VERISIM_ASSERT(is_positive(spacing));
+  VERISIM_ASSERT(shell.voxel.empty());
+  VERISIM_ASSERT(shell.size() == map.surface_count);
   std::vector<Candidate> candidates;
   candidates.reserve(shell.size());
   for (std::uint32_t i = 0; i < shell.size(); ++i) candidates.push_back(candidate_of(shell, map, spacing, i));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/voxel/crossings.hpp"
 
@@ -173,6 +174,9 @@ std::vector<std::int32_t> winding_of_roots(const GridMesh& mesh, const BrickList
 }  // namespace
 
 Sides find_sides(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface) {
+  VERISIM_ASSERT(lists.begin.size() == surface.entry.size() + 1);
+  VERISIM_ASSERT(surface.cells.size() == surface.brick.size());
+  VERISIM_ASSERT(is_ascending(surface.brick));
   RegionGraph graph(surface);
   const std::vector<std::int32_t> winding = winding_of_roots(mesh, lists, surface, graph);
   Sides sides;

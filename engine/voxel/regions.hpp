@@ -18,7 +18,7 @@ struct Sides {
 };
 
 /// About 2 us per surface brick and 30 ns per other brick. On a mesh that is not closed the answer is deterministic,
-/// but may differ from one region to the next.
+/// but may differ from one region to the next. @pre `lists` and `surface` are of this mesh and of one grid
 [[nodiscard]] Sides find_sides(const GridMesh& mesh, const BrickLists& lists, const SurfaceVoxels& surface);
 
 }  // namespace verisim

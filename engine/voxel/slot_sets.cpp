@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/brick_mask.hpp"
 #include "engine/voxel/parallel.hpp"
 
@@ -106,6 +107,8 @@ class Inheritance {
 
 std::vector<FeatureSetId> sets_by_slot(const Voxmap& map, const std::vector<FeatureSetId>& of_voxel,
                                        const FeatureSets& sets, unsigned threads) {
+  VERISIM_ASSERT(of_voxel.size() == map.surface_count);
+  VERISIM_ASSERT(std::ranges::all_of(of_voxel, [&](FeatureSetId id) { return id < sets.size(); }));
   std::vector<FeatureSetId> of_slot(map.layers.size(), 0);
   std::vector<std::size_t> stored;  // bricks
   for (std::size_t brick = 0; brick < map.brick_block.size(); ++brick)

@@ -21,6 +21,7 @@ static_assert(kInheritedLayers <= kBand);
 /// the set with the most entities, which is the rim's; of several such the first in the order of z, y, x. 2 bytes per
 /// slot.
 /// @param of_voxel  the set of each surface voxel
+/// @pre of_voxel has a set for each of the map's surface voxels, and `sets` has each of these
 [[nodiscard]] std::vector<FeatureSetId> sets_by_slot(const Voxmap& map, const std::vector<FeatureSetId>& of_voxel,
                                                      const FeatureSets& sets, unsigned threads);
 

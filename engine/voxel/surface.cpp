@@ -1,5 +1,6 @@
 #include "engine/voxel/surface.hpp"
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/parallel.hpp"
 
 namespace verisim {
@@ -22,6 +23,7 @@ BrickMask touched_cells(const GridMesh& mesh, std::span<const std::uint32_t> tri
 SurfaceVoxels find_surface(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks,
                            unsigned threads) {
   SurfaceVoxels surface{.bricks = bricks, .brick = {}, .cells = {}, .entry = {}};
+  VERISIM_ASSERT(lists.begin.size() == static_cast<std::size_t>(bricks.cast<std::int64_t>().prod()) + 1);
   const std::size_t brick_count = lists.begin.size() - 1;
   std::size_t candidates = 0;
   for (std::size_t i = 0; i < brick_count; ++i) candidates += lists.empty(i) ? 0 : 1;

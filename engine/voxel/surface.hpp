@@ -17,6 +17,7 @@ struct SurfaceVoxels {
 };
 
 /// Marks every voxel whose closed box a triangle touches (triangle_touches_box, 512 voxels at a time).
+/// @pre `lists` is of this mesh and of a grid of `bricks` bricks
 [[nodiscard]] SurfaceVoxels find_surface(const GridMesh& mesh, const BrickLists& lists, const Eigen::Vector3i& bricks,
                                          unsigned threads);
 

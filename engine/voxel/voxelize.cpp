@@ -1,5 +1,6 @@
 #include "engine/voxel/voxelize.hpp"
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/layers.hpp"
 #include "engine/voxel/limits.hpp"
 #include "engine/voxel/pointshell.hpp"
@@ -35,6 +36,7 @@ VoxelBody voxelize(const std::string& name, const TriangleMesh& mesh, const Voxe
     fill_blocks(surface, sides, blocks, options.threads, map);
     fill_clearance(surface, sides, map);
   }
+  VERISIM_ASSERT(map.surface_count == surface.voxels);  // a voxel's number is its point's: association, contacts
   body.shell = make_pointshell(grid_mesh, lists, surface, map, bounds.center(), options.threads);
   if (options.point_spacing > 0) body.shell = thinned(body.shell, map, options.point_spacing);
   return body;

@@ -27,12 +27,14 @@ struct VoxelizeOptions {
 
 /// True if the closed triangle abc touches the closed box of the given half side around center, grown by 2^-20 of the
 /// half side. Separating axes, double arithmetic. All in the same units. Zero-area triangles are segments or points.
+/// @pre half_side > 0
 [[nodiscard]] bool triangle_touches_box(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& center,
                                         double half_side);
 
 /// Places the grid. Per axis the bounding box's faces lie as far from voxel walls as possible: a cell centre or a cell
 /// wall is at the box's centre, whichever is better (cell wall if equal). The border is one brick and up to seven more
 /// cells, so that the band around both faces fills the fewest bricks.
+/// @pre bounds are finite and hold a point; voxel_size is finite and above 0
 [[nodiscard]] Vector3d grid_origin(const Bounds& bounds, double voxel_size, Eigen::Vector3i& bricks);
 
 }  // namespace verisim

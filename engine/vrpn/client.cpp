@@ -57,6 +57,7 @@ Client::Client(RemoteName remote, bool use_udp)
 }
 
 void Client::turn(Timestamp now, int wait_ms, const Handler& handler) {
+  VERISIM_ASSERT(wait_ms >= 0);  // below, poll would wait for ever
   if (connection_ == nullptr) seek(now);
   if (connection_ != nullptr) {
     ping(now);

@@ -26,9 +26,10 @@ class Client {
   static constexpr std::uint32_t kRetry = 2;  ///< s between two requests
 
   /// `use_udp`: tell the server to send low-latency reports as datagrams (not on direct connections).
-  /// Error(io) if the host is unknown or out of reach.
+  /// Error(io) if the host is unknown or out of reach. @pre the device has a name (parse_remote_name)
   Client(RemoteName remote, bool use_udp);
 
+  /// @pre wait_ms >= 0
   /// Waits up to `wait_ms`, and hands what came from the device to `handler`.
   void turn(Timestamp now, int wait_ms, const Handler& handler);
 

@@ -24,6 +24,10 @@ std::int32_t id_of(const std::vector<std::string>& names, std::string_view name)
 
 Connection::Connection(const Names& names, std::optional<UdpEnd> own_udp)
     : names_(&names), own_udp_(std::move(own_udp)) {
+  VERISIM_ASSERT(names.senders.size() < kIdCount);
+  VERISIM_ASSERT(names.types.size() < kIdCount);
+  for (const std::string& name : names.senders) VERISIM_ASSERT(is_name(name));
+  for (const std::string& name : names.types) VERISIM_ASSERT(is_name(name));
   put_cookie(out_);
 }
 
@@ -106,18 +110,22 @@ void Connection::describe(std::vector<std::string>& peer_names, const Message& m
 }
 
 void Connection::send(std::string_view sender, std::string_view type, Timestamp time, View payload) {
-  if (!established_ || faulty()) return;
   const std::int32_t sender_id = id_of(names_->senders, sender);
   const std::int32_t type_id = id_of(names_->types, type);
   VERISIM_ASSERT(sender_id >= 0);
   VERISIM_ASSERT(type_id >= 0);
+  if (!established_ || faulty()) return;
   append({time, sender_id, type_id, tcp_sequence_++, payload});
 }
 
 Bytes Connection::datagram(std::string_view sender, std::string_view type, Timestamp time, View payload) {
   VERISIM_ASSERT(established_);
+  const std::int32_t sender_id = id_of(names_->senders, sender);
+  const std::int32_t type_id = id_of(names_->types, type);
+  VERISIM_ASSERT(sender_id >= 0);
+  VERISIM_ASSERT(type_id >= 0);
   Bytes bytes;
-  put_message(bytes, {time, id_of(names_->senders, sender), id_of(names_->types, type), udp_sequence_++, payload});
+  put_message(bytes, {time, sender_id, type_id, udp_sequence_++, payload});
   return bytes;
 }
 

@@ -44,6 +44,7 @@ class Connection {
   static constexpr std::size_t kUnsentMax = 256 * 1024;  ///< bytes that wait for a peer that does not read
 
   /// Queues the cookie. `own_udp`: described to the peer once its cookie is there. `names` must outlive this.
+  /// @pre every name can be described (is_name), and there are fewer than 2000 of each
   explicit Connection(const Names& names, std::optional<UdpEnd> own_udp = {});
 
   /// Takes bytes from TCP, split anywhere. Hands every decoded message to `handler`. @param now  time stamp of answers
@@ -51,9 +52,9 @@ class Connection {
   /// One datagram. One that is malformed is ignored: anyone may have sent it.
   void receive_datagram(View datagram, const Handler& handler);
 
-  /// Queues a message for TCP. Before established() it is dropped.
+  /// Queues a message for TCP. Before established() it is dropped. @pre sender and type are among the names
   void send(std::string_view sender, std::string_view type, Timestamp time, View payload);
-  /// The same message as one datagram. @pre established()
+  /// The same message as one datagram. @pre established(); sender and type are among the names
   [[nodiscard]] Bytes datagram(std::string_view sender, std::string_view type, Timestamp time, View payload);
 
   [[nodiscard]] bool established() const { return established_; }  ///< the peer's cookie was good
@@ -62,7 +63,7 @@ class Connection {
   [[nodiscard]] const std::string& fault() const { return fault_; }  ///< why, one line
 
   [[nodiscard]] View unsent() const { return View(out_).subspan(sent_); }
-  /// `bytes` of unsent() have left.
+  /// `bytes` of unsent() have left. @pre bytes <= unsent().size()
   void sent(std::size_t bytes);
 
  private:

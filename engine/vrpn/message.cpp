@@ -32,6 +32,7 @@ bool cookie_is_good(View cookie) {
 
 void put_message(Bytes& out, const Message& message) {
   VERISIM_ASSERT(padded(message.payload.size()) <= kPaddedPayloadMax);
+  VERISIM_ASSERT(message.time.microseconds < 1'000'000);
   const std::size_t begin = out.size();
   put_uint32(out, static_cast<std::uint32_t>(kHeaderBytes + message.payload.size()));
   put_uint32(out, message.time.seconds);

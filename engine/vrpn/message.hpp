@@ -40,6 +40,7 @@ void put_cookie(Bytes& out);
 [[nodiscard]] bool cookie_is_good(View cookie);
 
 /// Header, payload, padding with zeros to a multiple of 8.
+/// @pre the padded payload has at most kPaddedPayloadMax bytes; a second has fewer than 1000000 microseconds
 void put_message(Bytes& out, const Message& message);
 
 /// The first message of a stream or datagram.

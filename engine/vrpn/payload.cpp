@@ -27,9 +27,12 @@ bool is_host_character(char c) {
 
 }  // namespace
 
+bool is_name(std::string_view name) {
+  return !name.empty() && name.size() <= kNameMax && name.find('\0') == std::string_view::npos;
+}
+
 Bytes encode_name(std::string_view name) {
-  VERISIM_ASSERT(!name.empty());
-  VERISIM_ASSERT(name.size() <= kNameMax);
+  VERISIM_ASSERT(is_name(name));
   Bytes payload;
   put_uint32(payload, static_cast<std::uint32_t>(name.size() + 1));
   put_text(payload, name);
@@ -47,6 +50,7 @@ std::optional<std::string_view> decode_name(View payload) {
 }
 
 Bytes encode(const SensorPose& pose) {
+  VERISIM_ASSERT(pose.sensor >= 0);
   Bytes payload;
   put_int32(payload, pose.sensor);
   put_int32(payload, 0);
@@ -100,6 +104,7 @@ std::optional<Text> decode_text(View payload) {
 }
 
 Bytes encode(const ConnectionRequest& request) {
+  VERISIM_ASSERT(!request.host.empty());
   Bytes datagram;
   put_text(datagram, fmt::format("{} {}", request.host, request.port));
   return datagram;

@@ -28,7 +28,9 @@ inline constexpr std::string_view kRequestUnitToSensor = "vrpn_Tracker Request_U
 inline constexpr std::string_view kRequestWorkspace = "vrpn_Tracker Request_Tracker_Workspace";
 inline constexpr std::string_view kAnalog = "vrpn_Analog Channel";
 
-/// A sender's or type's description: the name's length with its NUL, the name, NUL. @pre 1 to kNameMax bytes, no NUL
+/// Can it be described: 1 to kNameMax bytes, no NUL?
+[[nodiscard]] bool is_name(std::string_view name);
+/// A sender's or type's description: the name's length with its NUL, the name, NUL. @pre is_name(name)
 [[nodiscard]] Bytes encode_name(std::string_view name);
 [[nodiscard]] std::optional<std::string_view> decode_name(View payload);
 
@@ -41,7 +43,7 @@ struct SensorPose {
   std::int32_t sensor = 0;  ///< from 0
   Placement placement;
 };
-[[nodiscard]] Bytes encode(const SensorPose& pose);
+[[nodiscard]] Bytes encode(const SensorPose& pose);  ///< @pre pose.sensor >= 0
 
 /// kToRoom.
 [[nodiscard]] Bytes encode(const Placement& placement);
@@ -72,7 +74,7 @@ struct ConnectionRequest {
   std::string host;
   std::uint16_t port = 0;  ///< 1024 or above
 };
-[[nodiscard]] Bytes encode(const ConnectionRequest& request);
+[[nodiscard]] Bytes encode(const ConnectionRequest& request);  ///< @pre a host is named
 /// As in stock VRPN: a host of letters, digits and dots, white space, an integer; text after it is ignored.
 [[nodiscard]] std::optional<ConnectionRequest> decode_request(View datagram);
 

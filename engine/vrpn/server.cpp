@@ -23,6 +23,8 @@ Names names_of(std::vector<std::string> devices, std::vector<std::string> types)
 
 Server::Server(const Address& at, std::vector<std::string> devices, std::vector<std::string> types)
     : names_(names_of(std::move(devices), std::move(types))), buffer_(kReadMax) {
+  for (const std::string& name : names_.senders) VERISIM_ASSERT(is_name(name));
+  for (const std::string& name : names_.types) VERISIM_ASSERT(is_name(name));
   listen(at);
 }
 
@@ -40,6 +42,7 @@ void Server::listen(const Address& at) {
 }
 
 void Server::turn(Timestamp now, int wait_ms) {
+  VERISIM_ASSERT(wait_ms >= 0);  // below, poll would wait for ever
   for (const auto& client : clients_) write(*client);
   std::vector<pollfd> polled = {{tcp_.fd(), POLLIN, 0}, {udp_.fd(), POLLIN, 0}};
   for (const auto& client : clients_) {

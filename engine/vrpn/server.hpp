@@ -22,6 +22,7 @@ class Server {
 
   /// Listens at `at` on TCP and UDP; port 0 takes one that is free for both. Error(io) if the port is taken.
   /// @param devices, types  names that this server sends; ping and pong are added
+  /// @pre is_name(each of them)
   Server(const Address& at, std::vector<std::string> devices, std::vector<std::string> types);
 
   /// Called with messages of a client to one of our devices, except pings. `reply` answers that client alone.
@@ -29,10 +30,10 @@ class Server {
   using RequestHandler = std::function<void(const Received& request, const Reply& reply)>;
   void on_request(RequestHandler handler) { request_handler_ = std::move(handler); }
 
-  /// Waits up to `wait_ms` for events and handles all that have occurred.
+  /// Waits up to `wait_ms` for events and handles all that have occurred. @pre wait_ms >= 0
   void turn(Timestamp now, int wait_ms);
   /// Sends to all clients, by datagram to those that asked for datagrams, else by TCP, with the next turn at the
-  /// latest.
+  /// latest. @pre device and type are among the names given to the constructor
   void publish(std::string_view device, std::string_view type, Timestamp time, View payload);
 
   [[nodiscard]] const Address& address() const { return address_; }

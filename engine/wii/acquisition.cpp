@@ -2,12 +2,13 @@
 
 #include <limits>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim::wii {
 namespace {
 
 constexpr std::array kTurns = {0.0, 0.6, -0.6};  // rad of yaw to start from: Gauss-Newton finds its way from there
-// Above this, per sighted coordinate, blobs are not this head: far outside any pixel noise.
-constexpr double kCostMax = 12;
 
 /// Depth-first over the assignments of blobs to the first `count` LEDs.
 struct AssignmentSearch {
@@ -47,7 +48,7 @@ struct AssignmentSearch {
       const Quaterniond C_RL = Quaterniond(upright.C_LR).conjugate();
       const Pose start{upright.C_LR.transpose() * two.p_L, (C_RL * R_LH).normalized()};
       const SolvedPose solved = solver.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright, start);
-      if (!solved.found || solved.cost > kCostMax * n) continue;
+      if (!solved.found || solved.cost > settings.thresholds.cost_per_led_max * n) continue;
       if (best.solved.found && solved.cost >= best.solved.cost) continue;
       best = {solved, current};
     }
@@ -58,9 +59,11 @@ struct AssignmentSearch {
 
 int sightings_of(const Reading& reading, const LedLayout& leds, const Assignment& assignment, int remote,
                  std::span<Sighting> sightings) {
+  VERISIM_ASSERT(sightings.size() >= static_cast<std::size_t>(leds.count));
   int n = 0;
   for (std::size_t led = 0; led < static_cast<std::size_t>(leds.count); ++led) {
     if (assignment[led] < 0) continue;
+    VERISIM_ASSERT(assignment[led] < reading.blob_count);
     const Blob& b = reading.blobs[static_cast<std::size_t>(assignment[led])];
     sightings[static_cast<std::size_t>(n++)] = {leds.p_H[led], b.u, b.v, remote};
   }
@@ -69,6 +72,7 @@ int sightings_of(const Reading& reading, const LedLayout& leds, const Assignment
 
 Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, const Pinhole& pinhole,
                       const PoseSolver& solver, const Upright& upright) {
+  VERISIM_ASSERT(is_unit(Vector3d(upright.C_LR.row(1))));
   const int count = std::min(settings.leds.count, reading.blob_count);
   if (count < 3) return {};
   AssignmentSearch search{reading, settings, pinhole, solver, upright, count};

@@ -19,7 +19,8 @@ class Admission {
   /// (continued; when the excess is within 4 standard deviations, measuring noise and not a jump), has jumped but is
   /// the second in a row at the new place (elsewhere), or is refused. The first one, and the first after kSilenceMax,
   /// is elsewhere.
-  /// @pre t grows from call to call
+  /// Times may go back a little, where two remotes report whose clocks differ: what counts is how far apart they are.
+  /// @pre t is finite
   [[nodiscard]] Verdict judge(double t, double variance, Vector3d& p_L);
   void forget() { *this = {}; }
 

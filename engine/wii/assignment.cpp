@@ -4,23 +4,22 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim::wii {
 namespace {
 
 constexpr double kPairMemory = 0.25;       // s; a head needs longer to roll over
 constexpr double kPixelsPerSecond = 2000;  // 1.5 m/s at 1 m, for gaps of some reports
-constexpr double kClutterRadius = 12;      // pixel; lamps stand still, unless the remote is moved
 constexpr double kRollCosineMin = -0.2;    // cosine of the roll: no head is tilted by more than 101 degrees
-constexpr double kRollScale = 0.5;         // rad, about how far heads are tilted
-constexpr double kSizeScale = 1;           // blob size units
+constexpr double kSizeScale = 1;           // blob size units: a true pair differs by no more
 constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly
 constexpr double kLedScale = 10;           // pixel; how near further LEDs are to where the pair alone puts them
 
 // Costs, in squared deviations over their scales.
-constexpr double kPairCostMax = 6;  // a tilt of 90 degrees costs 4, sizes that differ by two cost 4: both are no head
 constexpr double kMissingLedCost = 100;  // of a further LED that is nowhere near its place
 constexpr double kSizeCostMax = 2;       // sizes of real sensors follow distance badly: a hint, no proof
-constexpr double kCostMargin = 2;        // tilt and rounded sizes of a true pair cost less
 constexpr int kConfirmations = 5;        // images in a row that confirm a jump to another pair
 
 double distance_square(const Blob& a, const Blob& b) {
@@ -58,13 +57,18 @@ struct Search {
 }  // namespace
 
 Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vector2d> expected, double gate) {
+  VERISIM_ASSERT(expected.size() <= kLedsMax);
+  VERISIM_ASSERT(is_not_negative(gate));
   Search search{reading, expected, gate * gate};
   search.descend(0, 0, 0);
   return search.best;
 }
 
-PairFollower::PairFollower(const LedLayout& leds, const Pinhole& pinhole)
-    : leds_(leds), pinhole_(pinhole), pair_{leds.p_H[0], leds.p_H[1]} {}
+PairFollower::PairFollower(const LedLayout& leds, const Pinhole& pinhole, const Thresholds& thresholds)
+    : leds_(leds), pinhole_(pinhole), pair_{leds.p_H[0], leds.p_H[1]}, thresholds_(thresholds) {
+  VERISIM_ASSERT(leds.count >= 2);
+  VERISIM_ASSERT(leds.count <= kLedsMax);
+}
 
 PairFollower::Match PairFollower::solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const {
   const Blob& b0 = reading.blobs[static_cast<std::size_t>(first)];
@@ -86,7 +90,7 @@ PairFollower::Match PairFollower::reconsidered(const Reading& reading, const Mat
   Match other;
   if (reading.blob_count > 2) {
     const Match now = current.found() ? current : solve(reading, current.blob[0], current.blob[1], C_LR);
-    double cost = cost_of(reading, now, C_LR) - kCostMargin;
+    double cost = cost_of(reading, now, C_LR) - thresholds_.cost_margin;
     if (cost > 0) other = least_cost_pair(reading, C_LR, true, cost);
   }
   // One image does not confirm a jump. Once confirmed, the other pair is returned until it is followed.
@@ -122,15 +126,15 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
 
 PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
   // Without the yaw, the places of further LEDs are known only roughly: they choose among pairs and refuse none.
-  double cost = kPairCostMax + kMissingLedCost * (leds_.count - 2);
+  double cost = thresholds_.pair_cost_max + kMissingLedCost * (leds_.count - 2);
   return least_cost_pair(reading, C_LR, false, cost);
 }
 
 PairFollower::Match PairFollower::least_cost_pair(const Reading& reading, const Matrix3d& C_LR, bool clutter_too,
                                                   double& cost) const {
   const auto is_near_clutter = [&](int b) {
-    return !clutter_too &&
-           distance_square_to_clutter(reading.blobs[static_cast<std::size_t>(b)]) < kClutterRadius * kClutterRadius;
+    return !clutter_too && distance_square_to_clutter(reading.blobs[static_cast<std::size_t>(b)]) <
+                               thresholds_.clutter_radius * thresholds_.clutter_radius;
   };
   Match best;
   for (int i = 0; i < reading.blob_count; ++i)
@@ -156,7 +160,7 @@ double PairFollower::distance_square_to_clutter(const Blob& blob) const {
 double PairFollower::cost_of(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
   const TwoPointPose& pose = match.pose;
   const auto size = [&](std::size_t i) { return reading.blobs[static_cast<std::size_t>(match.blob[i])].size; };
-  const double roll = pose.sin_roll / kRollScale;
+  const double roll = pose.sin_roll / thresholds_.roll_sigma;
   const double unequal = (size(0) - size(1)) / kSizeScale;
   double cost = roll * roll + unequal * unequal;
   if (size_at_1m_ > 0) {
@@ -167,7 +171,7 @@ double PairFollower::cost_of(const Reading& reading, const Match& match, const M
   const Matrix3d R_LH = rotation_about_z(pose.cos_roll, pose.sin_roll).toRotationMatrix();
   for (std::size_t led = 2; led < static_cast<std::size_t>(leds_.count); ++led) {
     const Vector3d p_R = C_LR.transpose() * (pose.p_L + R_LH * leds_.p_H[led]);
-    if (p_R.z() <= 0) continue;
+    if (!(p_R.z() > 0)) continue;
     const Eigen::Vector2d pixel = pinhole_.project(p_R);
     double nearest = kWidth * kWidth;
     for (int b = 0; b < reading.blob_count; ++b)
@@ -180,6 +184,9 @@ double PairFollower::cost_of(const Reading& reading, const Match& match, const M
 }
 
 void PairFollower::follow(double t, const Reading& reading, const Match& match) {
+  VERISIM_ASSERT(std::isfinite(t));
+  VERISIM_ASSERT(std::min(match.blob[0], match.blob[1]) >= 0);
+  VERISIM_ASSERT(std::max(match.blob[0], match.blob[1]) < reading.blob_count);
   followed_ = true;
   t_ = t;
   for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];

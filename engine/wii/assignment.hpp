@@ -16,7 +16,7 @@ using Assignment = std::array<int, kLedsMax>;
 /// The assignment of least cost: global nearest neighbour with gating. The cost is the sum of squared pixel distances
 /// between blobs and the `expected` pixels of the LEDs. No blob further than `gate` pixels from an LED is assigned to
 /// it; an LED without a blob costs gate^2. All injective assignments are compared: at most 209.
-/// @pre expected holds the pixels of at most kLedsMax LEDs
+/// @pre expected holds the pixels of at most kLedsMax LEDs; gate is finite and not negative
 [[nodiscard]] Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vector2d> expected,
                                             double gate);
 
@@ -24,7 +24,8 @@ using Assignment = std::array<int, kLedsMax>;
 /// size, no allocation.
 class PairFollower {
  public:
-  PairFollower(const LedLayout& leds, const Pinhole& pinhole);
+  /// @pre the layout has two LEDs or more
+  PairFollower(const LedLayout& leds, const Pinhole& pinhole, const Thresholds& thresholds = {});
 
   struct Match {
     TwoPointPose pose;
@@ -37,7 +38,7 @@ class PairFollower {
   ///   - the head's roll from upright,
   ///   - one blob's size from the other's, and their mean from the size learned for that distance,
   ///   - the blob nearest to each further LED from where the pair says that the LED must be.
-  /// A pair of least cost has no blob within 12 pixels of clutter in the image that was followed last.
+  /// A pair of least cost has no blob within clutter_radius of clutter in the image that was followed last.
   [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR);
   /// `current` (its pose may be missing), or another pair of this image, once in five images in a row another pair has
   /// cost clearly less: an LED whose place a lamp took while it was dark is back. Nothing is computed for images with
@@ -46,6 +47,7 @@ class PairFollower {
   /// Whether a blob is nearer to clutter in the image that was followed last than to an LED's place [pixel^2].
   [[nodiscard]] bool is_clutter(const Blob& blob, double distance_square_to_led) const;
   /// Follow these two from now on; all other blobs of this image are clutter.
+  /// @pre t is finite; the match's blobs are two of the reading's
   void follow(double t, const Reading& reading, const Match& match);
   void forget() {
     followed_ = false;
@@ -67,6 +69,7 @@ class PairFollower {
   LedLayout leds_;
   Pinhole pinhole_;
   LedPair pair_;
+  Thresholds thresholds_;
   bool followed_ = false;
   double t_ = 0;
   std::array<Blob, 2> last_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/wii/virtual_remote.hpp"
 
@@ -13,6 +14,10 @@ namespace {
 Counted count_share(const FieldOfView& fov, double spacing, double d1, double d2, std::uint64_t count,
                     std::uint64_t seed) {
   VERISIM_ASSERT(count > 0);
+  VERISIM_ASSERT(is_not_negative(spacing));
+  VERISIM_ASSERT(is_not_negative(d1));
+  VERISIM_ASSERT(std::isfinite(d2));
+  VERISIM_ASSERT(d1 <= d2);
   RemoteSettings settings;
   settings.fov = fov;
   settings.leds = {Led{{spacing / 2, 0, 0}}, Led{{-spacing / 2, 0, 0}}};
@@ -35,6 +40,8 @@ Counted count_share(const FieldOfView& fov, double spacing, double d1, double d2
 }  // namespace
 
 double trackable_area(const FieldOfView& fov, double spacing, double d) {
+  VERISIM_ASSERT(is_not_negative(spacing));
+  VERISIM_ASSERT(is_not_negative(d));
   const double width = 2 * d * pinned::tan(fov.horizontal / 2) - spacing;
   return std::max(0.0, width) * 2 * d * pinned::tan(fov.vertical / 2);
 }
@@ -44,6 +51,7 @@ double trackable_volume_as_printed(const FieldOfView& fov, double spacing, doubl
 }
 
 double trackable_volume(const FieldOfView& fov, double spacing, double d1, double d2) {
+  VERISIM_ASSERT(d1 <= d2);
   const double th = pinned::tan(fov.horizontal / 2);
   const double tv = pinned::tan(fov.vertical / 2);
   VERISIM_ASSERT(2 * d1 * th >= spacing);

@@ -8,6 +8,8 @@
 
 namespace verisim::wii {
 
+// Of all: @pre spacing and distances are finite and not negative, d1 <= d2; where heads are counted, count > 0.
+
 /// Eq. 2.1: the area of the plane at distance d [m] in which both LEDs, `spacing` [m] apart along x, are in view [m^2].
 /// Exact for a head that only moves; 0 where the LEDs do not fit.
 [[nodiscard]] double trackable_area(const FieldOfView& fov, double spacing, double d);

@@ -10,7 +10,7 @@ class Geometric final : public TrackerBase {
  public:
   explicit Geometric(const TrackerSettings& settings)
       : TrackerBase(settings),
-        follower_(settings.leds, pinhole()),
+        follower_(settings.leds, pinhole(), settings.thresholds),
         spacing_((settings.leds.p_H[0] - settings.leds.p_H[1]).norm()) {}
 
   [[nodiscard]] std::string_view name() const override { return "geometric"; }

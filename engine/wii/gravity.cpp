@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+
 namespace verisim::wii {
 namespace {
 
@@ -12,6 +14,8 @@ constexpr double kDirectionMin = 0.1;  // g; opposed readings can average to not
 }  // namespace
 
 Matrix3d levelling(const Vector3d& up_R) {
+  VERISIM_ASSERT(is_finite(up_R));
+  VERISIM_ASSERT(!up_R.isZero(0));
   const Vector3d up = up_R.normalized();
   const double cos_p = std::sqrt(up.x() * up.x() + up.y() * up.y());
   const double sin_p = up.z();
@@ -25,7 +29,14 @@ Matrix3d levelling(const Vector3d& up_R) {
   return C;
 }
 
+GravityFilter::GravityFilter(double time_constant) : time_constant_(time_constant) {
+  VERISIM_ASSERT(is_positive(time_constant));
+}
+
 void GravityFilter::add(double dt, const Vector3d& force_R) {
+  VERISIM_ASSERT(is_not_negative(dt));
+  VERISIM_ASSERT(is_finite(force_R));
+  VERISIM_ASSERT(!force_R.isZero(0));
   if (!known_) {
     up_R_ = force_R;
     rate_R_.setZero();

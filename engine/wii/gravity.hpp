@@ -3,6 +3,7 @@
 // the remote's own.
 #pragma once
 
+#include "engine/base/error.hpp"
 #include "engine/base/pose.hpp"
 
 namespace verisim::wii {
@@ -18,14 +19,20 @@ namespace verisim::wii {
 /// direction is known.
 class GravityFilter {
  public:
-  explicit GravityFilter(double time_constant) : time_constant_(time_constant) {}
+  /// @pre the time constant is finite and above 0
+  explicit GravityFilter(double time_constant);
 
   /// One reading [g], `dt` seconds after the one before. Constant time, no allocation.
+  /// @pre dt is finite and not negative; the reading is finite and has a direction
   void add(double dt, const Vector3d& force_R);
   void forget() { known_ = false; }
 
   [[nodiscard]] bool known() const { return known_; }
-  [[nodiscard]] const Matrix3d& C_LR() const { return C_LR_; }  ///< @pre known()
+  /// @pre known()
+  [[nodiscard]] const Matrix3d& C_LR() const {
+    VERISIM_ASSERT(known_);
+    return C_LR_;
+  }
 
  private:
   double time_constant_;

@@ -13,10 +13,12 @@ namespace verisim::wii {
 class Head : public Companion {
  public:
   /// Error(input) as make_tracker, for the source's settings.
+  /// @pre source is not null; X_WL is finite, its rotation unit
   Head(std::string name, std::unique_ptr<ReportSource> source, const std::string& tracker, const Pose& X_WL);
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   /// Takes every report that is due at simulated time t [s] or before. Costs a comparison unless one is.
+  /// @pre t is finite
   void advance(double t) override;
   [[nodiscard]] double duration() const override { return source_->duration(); }
   /// /state/wii/NAME and /cost/wii/NAME. A frame that took reports adds a row: the last of them.

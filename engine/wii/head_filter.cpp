@@ -2,29 +2,20 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/wii/admission.hpp"
 
 namespace verisim::wii {
 namespace {
 
-// Chosen on natural motions whose amplitudes fall as f^-0.5 to f^-2 with their frequencies: lower lags behind the
-// lively ones, higher lets the pixel noise of the calm ones through.
-constexpr double kLinearDensity = 0.7;   // m^2/s^3
-constexpr double kAngularDensity = 0.5;  // rad^2/s^3
-// While LEDs are missing, a turn looks like a motion. With the density of fast heads the filter would explain every
-// motion as a turn.
-constexpr double kGuessedDensity = 0.1;  // rad^2/s^3
-constexpr double kUnseenDensity = 8;     // times as much once nothing is seen: the head may do anything
-constexpr double kDecay = 0.4;           // s
-// Two LEDs of three cannot tell a turn from coming nearer. A turn that is predicted for too long becomes an error of
-// depth.
-constexpr double kPairDecay = 0.08;  // s
-constexpr double kSlow = 0.1;        // s
-constexpr double kSpinMax = 15;      // rad/s
+constexpr double kSpinMax = 15;  // rad/s: faster than any head turns
 
 }  // namespace
 
 void HeadFilter::start(const Pose& X_RH, const Matrix6d& covariance) {
+  VERISIM_ASSERT(is_placement(X_RH));
+  VERISIM_ASSERT(covariance.allFinite());
   X_RH_ = X_RH;
   R_RH_ = X_RH.rotation.toRotationMatrix();
   v_.setZero();
@@ -42,9 +33,10 @@ void HeadFilter::start(const Pose& X_RH, const Matrix6d& covariance) {
 }
 
 void HeadFilter::predict(double dt, View view) {
+  VERISIM_ASSERT(is_not_negative(dt));
   if (view == View::all) {
-    v_slow_ += dt / (kSlow + dt) * (v_ - v_slow_);
-    w_slow_ += dt / (kSlow + dt) * (w_ - w_slow_);
+    v_slow_ += dt / (thresholds_.slow + dt) * (v_ - v_slow_);
+    w_slow_ += dt / (thresholds_.slow + dt) * (w_ - w_slow_);
   } else if (view_ == View::all) {
     w_ = w_slow_;
     if (view != View::pair) v_ = v_slow_;
@@ -58,9 +50,9 @@ void HeadFilter::predict(double dt, View view) {
   P_.middleRows<3>(6) += dt * P_.middleRows<3>(9);
   P_.middleCols<3>(0) += dt * P_.middleCols<3>(3);
   P_.middleCols<3>(6) += dt * P_.middleCols<3>(9);
-  const double decay = view == View::pair ? kPairDecay : kDecay;
+  const double decay = view == View::pair ? thresholds_.pair_decay : thresholds_.decay;
   if (view != View::all) slow_down(decay / (decay + dt), view);
-  const double more = view == View::none ? kUnseenDensity : 1;
+  const double more = view == View::none ? thresholds_.unseen_density : 1;
   const auto drive = [&](int block, double density) {
     for (int i = block; i < block + 3; ++i) {
       P_(i, i) += density * dt * dt * dt / 3;
@@ -69,9 +61,9 @@ void HeadFilter::predict(double dt, View view) {
       P_(i + 3, i + 3) += density * dt;
     }
   };
-  drive(0, more * kLinearDensity);
+  drive(0, more * thresholds_.linear_density);
   const bool guessing = view == View::pair || view == View::one;
-  drive(6, more * (guessing ? kGuessedDensity : kAngularDensity));
+  drive(6, more * (guessing ? thresholds_.guessed_density : thresholds_.angular_density));
 }
 
 void HeadFilter::slow_down(double keep, View view) {
@@ -90,6 +82,7 @@ void HeadFilter::slow_down(double keep, View view) {
 }
 
 bool HeadFilter::correct(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance, double gate) {
+  VERISIM_ASSERT(variance > 0);
   const Vector12d Pg = P_.middleCols<3>(0) * g_p + P_.middleCols<3>(6) * g_theta;
   const double expected = g_p.dot(Pg.segment<3>(0)) + g_theta.dot(Pg.segment<3>(6)) + variance;
   if (!(residual * residual <= gate * gate * expected)) return false;
@@ -101,6 +94,7 @@ bool HeadFilter::correct(const Vector3d& g_p, const Vector3d& g_theta, double re
 
 bool HeadFilter::correct_across(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance,
                                 double gate) {
+  VERISIM_ASSERT(variance > 0);
   const Vector12d Pg = P_.middleCols<3>(0) * g_p + P_.middleCols<3>(6) * g_theta;
   const double expected = g_p.dot(Pg.segment<3>(0)) + g_theta.dot(Pg.segment<3>(6)) + variance;
   if (!(residual * residual <= gate * gate * expected)) return false;

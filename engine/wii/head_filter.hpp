@@ -15,23 +15,28 @@ class HeadFilter {
   using Matrix12d = Eigen::Matrix<double, 12, 12>;
   using Vector12d = Eigen::Matrix<double, 12, 1>;
 
+  HeadFilter() = default;
+  explicit HeadFilter(const Thresholds& thresholds) : thresholds_(thresholds) {}
+
   /// Starts at a pose in R with its covariance; at rest, give or take 0.5 m/s and 1 rad/s.
+  /// @pre the pose is finite, its rotation unit; the covariance is finite
   void start(const Pose& X_RH, const Matrix6d& covariance);
 
   /// How much of the head the last report showed: two of three LEDs are a pair.
   enum class View { all, pair, one, none };
   /// Moves on by dt seconds. Where the full view ends, the mean velocities of the last 0.1 s take over from the
   /// momentary ones, which are noisier, and what is no longer seen dies away within 0.4 s: rotation always (with a pair
-  /// within 0.08 s), motion along the ray with one LED, all motion with none.
+  /// within 0.08 s), motion along the ray with one LED, all motion with none. @pre dt is finite and not negative
   void predict(double dt, View view);
 
   /// One scalar whose prediction is off by `residual`, with gradient (g_p, g_theta) and variance `variance`. Refused,
   /// and false, when the residual is beyond `gate` standard deviations of what was expected.
+  /// @pre variance > 0
   bool correct(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance, double gate);
 
   /// The same for an LED that is alone in view. Only motion across its ray is corrected; depth and orientation stay as
   /// they are, with their uncertainty (a Schmidt-Kalman update): one LED tells nothing of them, but would, through
-  /// rounding and acceleration, claim to.
+  /// rounding and acceleration, claim to. @pre variance > 0
   bool correct_across(const Vector3d& g_p, const Vector3d& g_theta, double residual, double variance, double gate);
 
   [[nodiscard]] const Pose& X_RH() const { return X_RH_; }
@@ -47,6 +52,7 @@ class HeadFilter {
   void slow_down(double keep, View view);
   void move(const Vector12d& error);
 
+  Thresholds thresholds_;
   Pose X_RH_;
   Matrix3d R_RH_ = Matrix3d::Identity();  ///< = X_RH_.rotation
   Vector3d v_ = Vector3d::Zero();

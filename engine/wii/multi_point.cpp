@@ -13,14 +13,7 @@ namespace {
 constexpr double kLostHeadMemory = 0.25;  // s that a lost head is looked for where it was
 constexpr double kOtherRemoteMax = 0.03;  // s: three reports; an older image of the other remote is no use
 constexpr double kBothSilent = 0.05;      // s without the first remote after which the second reports
-constexpr double kGate = 60;              // pixel
-constexpr double kGateGrowth = 1500;      // pixel per s without a report
-constexpr double kTurnRate = 0.3;         // rad/s: how fast a yaw that is no longer seen becomes unknown
-constexpr double kStillKnown = 0.02;      // rad, of a yaw that was seen one report ago
-constexpr double kCostPerLedMax = 12;     // per LED seen: beyond any pixel noise, so not this head
 constexpr int kUnassignedReportsMax = 5;  // reports with unassigned blobs before acquisition
-constexpr double kRollSigma = 0.5;        // rad
-constexpr double kPriorWidth = 2;  // times the settings' sigmas: where yaw is seen, the prior should hardly count
 
 class MultiPoint final : public TrackerBase {
  public:
@@ -30,7 +23,8 @@ class MultiPoint final : public TrackerBase {
         remotes_(remotes),
         X_R1R2_(settings.X_R1R2.value_or(Pose())),
         solver_(settings),
-        followers_{PairFollower(settings.leds, pinhole()), PairFollower(settings.leds, pinhole())} {}
+        followers_{PairFollower(settings.leds, pinhole(), settings.thresholds),
+                   PairFollower(settings.leds, pinhole(), settings.thresholds)} {}
 
   [[nodiscard]] std::string_view name() const override { return name_; }
 
@@ -46,16 +40,17 @@ class MultiPoint final : public TrackerBase {
     if (!reports(t, remote) || !gravity(0).known()) return;
     upright_ = prior();
     found_ = {};
-    if (followed_ && t - t_followed_ <= kLostHeadMemory) {
+    if (followed_ && std::abs(t - t_followed_) <= kLostHeadMemory) {  // the other remote's clock may be ahead
       found_ = follow(t);
       if (unassigned_ >= kUnassignedReportsMax) reacquire(t);
     } else {
       found_ = acquire(t);
     }
-    if (!found_.found || found_.cost > kCostPerLedMax * settings().leds.count) return;
+    if (!found_.found || found_.cost > settings().thresholds.cost_per_led_max * settings().leds.count) return;
     level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
     result.known = true;
-    result.usable = result.covariance.diagonal().head<3>().maxCoeff() < kValidSigmaMax * kValidSigmaMax;
+    result.usable = result.covariance.diagonal().head<3>().maxCoeff() <
+                    settings().thresholds.sigma_max * settings().thresholds.sigma_max;
   }
 
   [[nodiscard]] bool reports(double t, int remote) const override {
@@ -67,19 +62,19 @@ class MultiPoint final : public TrackerBase {
   [[nodiscard]] Upright prior() const {
     Upright u;
     u.C_LR = gravity(0).C_LR();
-    u.sigma_x = kPriorWidth * settings().yaw_sigma;
-    u.sigma_y = kPriorWidth * settings().pitch_sigma;
-    u.sigma_roll = kRollSigma;
+    u.sigma_x = settings().thresholds.prior_width * settings().yaw_sigma;
+    u.sigma_y = settings().thresholds.prior_width * settings().pitch_sigma;
+    u.sigma_roll = settings().thresholds.roll_sigma;
     return u;
   }
   /// … or, when they were seen a moment ago and now are not, near what they were.
   void take_last_as_prior(double t, Upright& u) const {
     const Matrix3d R_LH = u.C_LR * X_RH_.rotation.toRotationMatrix();
-    const double drift = kTurnRate * (t - t_full_);
+    const double drift = settings().thresholds.turn_rate * std::abs(t - t_full_);
     u.row_x = R_LH(2, 0);
     u.row_y = R_LH(2, 1);
-    u.sigma_x = std::min(settings().yaw_sigma, kStillKnown + drift);
-    u.sigma_y = std::min(settings().pitch_sigma, kStillKnown + drift);
+    u.sigma_x = std::min(settings().yaw_sigma, settings().thresholds.still_known + drift);
+    u.sigma_y = std::min(settings().pitch_sigma, settings().thresholds.still_known + drift);
   }
 
   [[nodiscard]] SolvedPose acquire(double t) {
@@ -120,7 +115,7 @@ class MultiPoint final : public TrackerBase {
 
   int follow_in(double t, int remote, std::span<Sighting> sightings) const {
     const View& view = views_[static_cast<std::size_t>(remote)];
-    if (t - view.t > kOtherRemoteMax) return 0;
+    if (std::abs(t - view.t) > kOtherRemoteMax) return 0;
     std::array<Eigen::Vector2d, kLedsMax> then;  // where the LEDs were when this image was taken
     std::array<Eigen::Vector2d, kLedsMax> now;
     const auto leds = static_cast<std::size_t>(settings().leds.count);
@@ -129,7 +124,7 @@ class MultiPoint final : public TrackerBase {
       if (!solver_.project(predicted(view.t), p_H, remote, then[led])) return 0;
       if (!solver_.project(predicted(t), p_H, remote, now[led])) return 0;
     }
-    const double gate = kGate + kGateGrowth * (t - t_followed_);
+    const double gate = settings().thresholds.gate + settings().thresholds.gate_growth * std::abs(t - t_followed_);
     const Assignment blobs = nearest_assignment(view.reading, std::span(then).first(leds), gate);
     int n = 0;
     for (std::size_t led = 0; led < leds; ++led) {
@@ -148,7 +143,7 @@ class MultiPoint final : public TrackerBase {
     Pose start;
     for (int remote = 0; remote < remotes_; ++remote) {
       const auto i = static_cast<std::size_t>(remote);
-      if (t - views_[i].t > kOtherRemoteMax || !gravity(remote).known()) continue;
+      if (std::abs(t - views_[i].t) > kOtherRemoteMax || !gravity(remote).known()) continue;
       followers_[i].forget();
       const PairFollower::Match match = followers_[i].match(t, views_[i].reading, gravity(remote).C_LR());
       if (!match.found()) continue;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
 #include "engine/wii/admission.hpp"
@@ -41,6 +42,9 @@ void check(const PlaceOptions& options) {
   for (const Pose& X_WH : options.heads)
     if (!X_WH.position.allFinite() || !X_WH.rotation.coeffs().allFinite())
       fail(ErrorKind::input, "wii place: a head pose is not finite; remove it from the trace");
+  if (!options.room_min.allFinite() || !options.room_max.allFinite())
+    fail(ErrorKind::input, "wii place: a corner of the room is not finite; correct it");
+  check_settings(options.tracker);
   if (!(options.room_min.array() <= options.room_max.array()).all())
     fail(ErrorKind::input, "wii place: the room's lower corner lies above its upper one; exchange them");
 }
@@ -90,6 +94,8 @@ Placement improve(const PlaceOptions& options, Parameters x) {
 }  // namespace
 
 Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double heading, double pitch) {
+  VERISIM_ASSERT(!options.heads.empty());
+  VERISIM_ASSERT(is_finite(p_WR));
   Placement place{.X_WR = {p_WR, aim(heading, pitch)}, .heading = heading, .pitch = pitch};
   const Pinhole pinhole(options.tracker.fov);
   TrackerSettings known = options.tracker;
@@ -149,6 +155,7 @@ Placement best_place(const PlaceOptions& options) {
 
 std::vector<Pose> modelled_heads(const Vector3d& middle, const Vector3d& toward, const Vector3d& spread, int count,
                                  std::uint64_t seed) {
+  VERISIM_ASSERT(count >= 0);
   const TrackerSettings typical;
   const RandomStream random(seed, "wii/heads");
   const Vector3d way = middle - toward;  // +z of H points backwards

@@ -26,16 +26,17 @@ struct Placement {
 };
 
 /// What a given place is worth. Cost: two projections per head.
+/// @pre there are heads; the settings are such that a tracker takes them (check_settings); the place is finite
 [[nodiscard]] Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double heading, double pitch);
 
 /// The best place: most heads covered; among equals (to a tenth of a percent) the least expected error. A 5 x 5 x 5
 /// grid of places aimed at the middle of the heads, then the best eight improved along each coordinate by steps that
-/// halve down to 1 mm and 0.05 degrees. Deterministic. Error(input) for no heads, an empty room or a head that is not
-/// finite.
+/// halve down to 1 mm and 0.05 degrees. Deterministic. Error(input) for no heads, an empty or endless room, a head that
+/// is not finite, or settings that no tracker takes.
 [[nodiscard]] Placement best_place(const PlaceOptions& options);
 
 /// Heads of someone at work at `middle` who faces `toward`: normal about it with `spread` [m] per axis, turned as heads
-/// turn (the settings' yaw and pitch sigma, half of it as roll).
+/// turn (the settings' yaw and pitch sigma, half of it as roll). @pre count >= 0
 [[nodiscard]] std::vector<Pose> modelled_heads(const Vector3d& middle, const Vector3d& toward, const Vector3d& spread,
                                                int count, std::uint64_t seed);
 

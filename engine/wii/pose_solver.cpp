@@ -3,6 +3,9 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim::wii {
 namespace {
 
@@ -30,12 +33,15 @@ struct PoseSolver::Normal {
 
 PoseSolver::PoseSolver(const TrackerSettings& settings)
     : pinhole_(settings.fov), weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)) {
+  VERISIM_ASSERT(is_positive(settings.pixel_sigma));
+  VERISIM_ASSERT(!settings.X_R1R2 || is_placement(*settings.X_R1R2));
   const Pose X_R2R1 = settings.X_R1R2.value_or(Pose()).inverse();
   R_iR_ = {Matrix3d::Identity(), X_R2R1.rotation.toRotationMatrix()};
   p_iR_ = {Vector3d::Zero(), X_R2R1.position};
 }
 
 bool PoseSolver::project(const Pose& X_RH, const Vector3d& p_H, int remote, Eigen::Vector2d& pixel) const {
+  VERISIM_ASSERT(remote == 0 || remote == 1);
   const auto i = static_cast<std::size_t>(remote);
   const Vector3d p = R_iR_[i] * (X_RH * p_H) + p_iR_[i];
   if (!(p.z() > kDepthMin)) return false;
@@ -77,6 +83,11 @@ bool PoseSolver::accumulate(std::span<const Sighting> sightings, const Upright& 
 }
 
 SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright& upright, const Pose& start) const {
+  VERISIM_ASSERT(sightings.size() <= kSightingsMax);
+  for (const Sighting& s : sightings) VERISIM_ASSERT(s.remote == 0 || s.remote == 1);
+  VERISIM_ASSERT(upright.sigma_x > 0);
+  VERISIM_ASSERT(upright.sigma_y > 0);
+  VERISIM_ASSERT(upright.sigma_roll > 0);
   SolvedPose solved;
   solved.X_RH = start;
   for (int step = 0; step < kIterations; ++step) {

@@ -35,6 +35,7 @@ class ReportSource {
   [[nodiscard]] virtual double duration() const = 0;  ///< s; 0: without end
 };
 
+/// @pre as many channels as times; as many poses, or none
 [[nodiscard]] std::unique_ptr<ReportSource> make_recorded_source(Recording recording);
 
 struct VirtualSourceOptions {

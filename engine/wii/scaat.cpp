@@ -13,13 +13,9 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kGateSigmas = 5;
-constexpr double kPixelGate = 15;  // pixel, beside what the state's uncertainty allows
-constexpr double kPixelGateMax = 200;
+constexpr double kPixelGateMax = 200;         // pixel: a fifth of the image
 constexpr double kCoastMax = 0.1;             // s without any LED that a prediction still counts as valid
 constexpr double kForgetAfter = 1;            // s without any LED after which nothing is predicted any more
-constexpr double kSigmaMax = 0.15;            // m: less sure than this is not valid
-constexpr double kUprightTime = 1;            // s: the prior pulls with this time constant where LEDs decide
 constexpr double kPinned = 1 * kDegree;       // two LEDs: yaw and pitch are held, not estimated; see report()
 constexpr double kOverturned = -0.2;          // R_LH(1,1): nobody's head
 constexpr int kUnassignedMax = 3;             // reports with unassigned blobs before acquisition
@@ -33,7 +29,8 @@ class Scaat final : public TrackerBase {
   explicit Scaat(const TrackerSettings& settings)
       : TrackerBase(settings),
         solver_(settings),
-        follower_(settings.leds, pinhole()),
+        follower_(settings.leds, pinhole(), settings.thresholds),
+        filter_(settings.thresholds),
         spacing_((settings.leds.p_H[0] - settings.leds.p_H[1]).norm()),
         pixel_variance_(settings.pixel_sigma * settings.pixel_sigma) {}
 
@@ -78,7 +75,7 @@ class Scaat final : public TrackerBase {
     for (std::size_t led = 0; led < leds; ++led)
       if (!solver_.project(filter_.X_RH(), settings().leds.p_H[led], 0, expected[led])) return 0;
     const double spread = pinhole().fx * std::sqrt(filter_.position_variance()) / filter_.X_RH().position.z();
-    const double gate = std::min(kPixelGateMax, kPixelGate + 3 * spread);
+    const double gate = std::min(kPixelGateMax, settings().thresholds.pixel_gate + 3 * spread);
     const Assignment blobs =
         without_clutter(reading, expected, nearest_assignment(reading, std::span(expected).first(leds), gate));
     const auto assigned = std::count_if(blobs.begin(), blobs.end(), [](int b) { return b >= 0; });
@@ -123,8 +120,8 @@ class Scaat final : public TrackerBase {
       const Vector3d g = f / p.z() * (horizontal ? Vector3d(1, 0, -slope) : Vector3d(0, 1, -slope));
       const double measured = horizontal ? blob.u - kWidth / 2 : blob.v - kHeight / 2;
       const double off = measured - f * slope;
-      return alone ? filter_.correct_across(g, arm.cross(g), off, pixel_variance_, kGateSigmas)
-                   : filter_.correct(g, arm.cross(g), off, pixel_variance_, kGateSigmas);
+      return alone ? filter_.correct_across(g, arm.cross(g), off, pixel_variance_, settings().thresholds.gate_sigmas)
+                   : filter_.correct(g, arm.cross(g), off, pixel_variance_, settings().thresholds.gate_sigmas);
     };
     const bool u = axis(true);
     const bool v = axis(false);
@@ -137,7 +134,7 @@ class Scaat final : public TrackerBase {
     const double distance = p.norm();
     const double size = size_at_1m_ / distance;
     filter_.correct(-size / (distance * distance) * p, Vector3d::Zero(), blob.size - size,
-                    kSizeSigma * kSizeSigma * kSizeRepeats, kGateSigmas);
+                    kSizeSigma * kSizeSigma * kSizeRepeats, settings().thresholds.gate_sigmas);
   }
   void learn_size(const Blob& blob) {
     size_at_1m_ += kBrightnessLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
@@ -147,7 +144,7 @@ class Scaat final : public TrackerBase {
   /// in the report. Three see both: the prior only pulls gently where they are not seen.
   void correct_upright(const Matrix3d& C_LR, double dt) {
     const bool two = settings().leds.count == 2;
-    const double repeats = kUprightTime / std::max(dt, 1e-6);
+    const double repeats = settings().thresholds.upright_time / std::max(dt, 1e-6);
     const auto variance = [&](double sigma) { return two ? kPinned * kPinned : 4 * sigma * sigma * repeats; };
     for (const int j : {0, 1}) {
       const Vector3d column_L = C_LR * filter_.R_RH().col(j);
@@ -198,9 +195,9 @@ class Scaat final : public TrackerBase {
     }
     Upright upright;
     upright.C_LR = C_LR;
-    upright.sigma_x = 2 * settings().yaw_sigma;
-    upright.sigma_y = 2 * settings().pitch_sigma;
-    upright.sigma_roll = 0.5;
+    upright.sigma_x = settings().thresholds.prior_width * settings().yaw_sigma;
+    upright.sigma_y = settings().thresholds.prior_width * settings().pitch_sigma;
+    upright.sigma_roll = settings().thresholds.roll_sigma;
     const Acquired acquired = acquire_head(reading, settings(), pinhole(), solver_, upright);
     if (acquired.solved.found) start(acquired.solved.X_RH, acquired.solved.covariance);
     return acquired.solved.found;
@@ -216,7 +213,8 @@ class Scaat final : public TrackerBase {
     result.covariance += unaveraged(result.pose);
     result.known = true;
     result.usable = (seen > 0 || t - t_seen_ <= kCoastMax) &&
-                    result.covariance.diagonal().head<3>().maxCoeff() < kValidSigmaMax * kValidSigmaMax &&
+                    result.covariance.diagonal().head<3>().maxCoeff() <
+                        settings().thresholds.sigma_max * settings().thresholds.sigma_max &&
                     filter_.X_RH().position.z() > 0;
   }
 

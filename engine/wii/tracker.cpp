@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/wii/trackers.hpp"
 
@@ -16,7 +17,9 @@ void require_positive(const char* what, double value, double max) {
     fail(ErrorKind::input, "tracker settings: {} is {} but must lie between 0 and {}; correct it", what, value, max);
 }
 
-void check(const TrackerSettings& settings) {
+}  // namespace
+
+void check_settings(const TrackerSettings& settings) {
   require_positive("horizontal field of view [rad]", settings.fov.horizontal, pinned::kPi);
   require_positive("vertical field of view [rad]", settings.fov.vertical, pinned::kPi);
   require_positive("pixel_sigma", settings.pixel_sigma, kWidth);
@@ -35,7 +38,11 @@ void check(const TrackerSettings& settings) {
   if (!(across >= 0.01))
     fail(ErrorKind::input, "leds: the first two are {} m apart seen from the front but must be 0.01 m; reorder them",
          across);
+  if (settings.X_R1R2 && !is_placement(*settings.X_R1R2))
+    fail(ErrorKind::input, "tracker settings: the second remote's placement is not finite with a unit quaternion");
 }
+
+namespace {
 
 bool has_remotes(const TrackerEntry& entry, const TrackerSettings& settings) {
   return entry.remotes == 1 || settings.X_R1R2;
@@ -92,7 +99,7 @@ const TrackerEntry& find_tracker(std::string_view name, Trackers among) {
 
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerSettings& settings, Trackers among) {
   const TrackerEntry& entry = find_tracker(name, among);
-  check(settings);
+  check_settings(settings);
   check_needs(entry, settings, among);
   return entry.make(settings);
 }

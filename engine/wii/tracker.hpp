@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "engine/wii/pinhole.hpp"
+#include "engine/wii/thresholds.hpp"
 
 namespace verisim::wii {
 
@@ -55,6 +56,7 @@ struct TrackerSettings {
   double yaw_sigma = 9 * kDegree;      ///< how far heads turn: what two LEDs cannot see
   double pitch_sigma = 5 * kDegree;    ///< how far heads nod
   std::optional<Pose> X_R1R2;          ///< the second remote in coordinates of the first; none: there is no second
+  Thresholds thresholds = {};
 };
 
 struct Report {
@@ -99,6 +101,9 @@ using Trackers = std::span<const TrackerEntry>;
 [[nodiscard]] std::vector<std::string> tracker_names(Trackers among = trackers());
 /// Error(input) for a name that is not in the table; it lists those that are.
 [[nodiscard]] const TrackerEntry& find_tracker(std::string_view name, Trackers among = trackers());
+
+/// Error(input) for settings that are not positive and finite, or first two LEDs less than 1 cm apart across.
+void check_settings(const TrackerSettings& settings);
 
 /// Error(input) for an unknown name, settings that are not positive and finite, first two LEDs less than 1 cm apart
 /// across, or needs that are not met: too few LEDs, no second remote.

@@ -16,9 +16,6 @@ struct Estimate {
   bool known = false;   ///< pose holds an estimate, usable or not
 };
 
-/// m: an estimate whose position has a standard deviation above this is not valid.
-inline constexpr double kValidSigmaMax = 0.15;
-
 class TrackerBase : public Tracker {
  public:
   explicit TrackerBase(const TrackerSettings& settings);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 
 namespace verisim::wii {
@@ -156,6 +157,9 @@ Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, s
   if (t.size() < 2) fail(ErrorKind::input, "{}: a motion needs at least two samples; record for longer", name);
   for (std::size_t i = 1; i < t.size(); ++i)
     if (!(t[i] > t[i - 1])) fail(ErrorKind::input, "{}: time does not grow at sample {}; sort the samples", name, i);
+  for (std::size_t i = 0; i < X_LH.size(); ++i)
+    if (!is_placement(X_LH[i]))
+      fail(ErrorKind::input, "{}: sample {} is not a finite pose with a unit quaternion; correct it", name, i);
   Trajectory path;
   path.name = name;
   path.what = "recorded";

@@ -36,7 +36,8 @@ struct Sine {
 [[nodiscard]] double sum_of_sines(std::span<const Sine> sines, double t);
 
 /// A head as it was recorded before a level remote at the origin: positions linear, rotations slerp, the ends held.
-/// Error(input) naming it for fewer than two samples or times that do not grow.
+/// Error(input) naming it for fewer than two samples, times that do not grow or poses that are none.
+/// @pre as many poses as times
 [[nodiscard]] Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, std::vector<Pose> X_LH);
 
 /// static, grid, sweep-x, sweep-z, natural, natural-yaw, edges, dropout-one, dropout-both, swap, upside-down, tilted,

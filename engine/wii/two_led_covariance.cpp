@@ -2,10 +2,13 @@
 
 #include <cmath>
 
+#include "engine/base/error.hpp"
+
 namespace verisim::wii {
 
 Matrix6d two_led_covariance(const TrackerSettings& settings, const Pinhole& pinhole, double spacing,
                             const Vector3d& p_L, double cos_roll, double sin_roll) {
+  VERISIM_ASSERT(spacing > 0);
   const double pixel = settings.pixel_sigma / std::min(pinhole.fx, pinhole.fy);
   const double pixel_square = pixel * pixel;
   const double tilt_square = settings.gravity_sigma * settings.gravity_sigma;

@@ -10,6 +10,7 @@ namespace verisim::wii {
 ///   across the ray  Z^2 sigma^2 / 2,   along it  dZ = Z^2 / spacing * sqrt(2) sigma,
 ///   yaw psi, unseen: dZ = Z (k psi - psi^2 / 2) with k the sine of the head's bearing along the LED line,
 ///   tilt of the accelerometer: turns everything about the pinhole.
+/// @pre spacing > 0
 [[nodiscard]] Matrix6d two_led_covariance(const TrackerSettings& settings, const Pinhole& pinhole, double spacing,
                                           const Vector3d& p_L, double cos_roll, double sin_roll);
 

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim::wii {
 namespace {
 
@@ -12,6 +15,9 @@ constexpr double kForwardMin =
 
 TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R,
                               const Matrix3d& C_LR) {
+  VERISIM_ASSERT(ray0_R.z() == 1);
+  VERISIM_ASSERT(ray1_R.z() == 1);
+  VERISIM_ASSERT(!(leds.p0_H - leds.p1_H).head<2>().isZero(0));
   TwoPointPose result;
   const Vector3d q0 = C_LR * ray0_R;
   const Vector3d q1 = C_LR * ray1_R;
@@ -41,6 +47,7 @@ TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const
 }
 
 Quaterniond rotation_about_z(double cos_angle, double sin_angle) {
+  VERISIM_ASSERT(std::abs(cos_angle * cos_angle + sin_angle * sin_angle - 1) < kUnitTolerance);
   // Half angles by square roots; the larger half first, so that neither loses digits.
   if (cos_angle >= 0) {
     const double w = std::sqrt((1 + cos_angle) / 2);

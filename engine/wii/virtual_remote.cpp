@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/wii/gravity.hpp"
 
@@ -26,8 +27,7 @@ void require(bool good, const char* what) {
 }
 
 void check(const RemoteSettings& s) {
-  require(s.fov.horizontal > 0 && s.fov.horizontal < pinned::kPi && s.fov.vertical > 0 && s.fov.vertical < pinned::kPi,
-          "the field of view must lie between 0 and 180 degrees");
+  require(is_field_of_view(s.fov), "the field of view must lie between 0 and 180 degrees");
   require(!s.leds.empty() && s.leds.size() <= kPointsMax, "1 to 32 LEDs can be simulated");
   require(s.leds.size() <= kSlots || s.slot_rule == SlotRule::first_free,
           "more LEDs than slots have no slots of their own; let them take the first that is free");
@@ -51,6 +51,7 @@ double nearest_whole(double x) {
 }  // namespace
 
 Pose levelled_pose(const Situation& situation) {
+  VERISIM_ASSERT(is_unit(situation.X_WR.rotation));
   const Matrix3d R_WR = situation.X_WR.rotation.toRotationMatrix();
   const Vector3d up_R = R_WR.transpose() * Vector3d::UnitY();
   const Pose X_LR{Vector3d::Zero(), Quaterniond(levelling(up_R)).normalized()};
@@ -192,6 +193,8 @@ Vector3d VirtualRemote::accelerometer(std::uint64_t k, const Situation& situatio
 }
 
 SensedReport VirtualRemote::sense(std::uint64_t k, const Situation& situation) {
+  VERISIM_ASSERT(is_placement(situation.X_WR));
+  VERISIM_ASSERT(is_placement(situation.X_WH));
   SensedReport report;
   report.t = report_time(k);
   report.X_LH = levelled_pose(situation);

@@ -110,7 +110,7 @@ struct SensedReport {
   unsigned led_in_view = 0;  ///< bit i: the channels hold LED i
 };
 
-/// The true levelled pose X_LH of a situation.
+/// The true levelled pose X_LH of a situation. @pre the remote is turned by a rotation
 [[nodiscard]] Pose levelled_pose(const Situation& situation);
 
 class VirtualRemote {
@@ -123,6 +123,7 @@ class VirtualRemote {
   /// Whether report k never arrives.
   [[nodiscard]] bool lost(std::uint64_t k) const;
   /// Report k, of the situation at its time. Slots remember who held them: call with growing k.
+  /// @pre remote and head are somewhere finite, turned by rotations
   [[nodiscard]] SensedReport sense(std::uint64_t k, const Situation& situation);
 
   [[nodiscard]] const RemoteSettings& settings() const { return settings_; }

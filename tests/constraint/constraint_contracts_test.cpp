@@ -56,15 +56,15 @@ TEST(RestorationDeathTest, NeedsAPlaceADirectionAndAShare) {
   EXPECT_BROKEN(activate(broken, Pose(), 1), "c.field == NormalField::about_point || is_unit(active.direction)");
 }
 
-TEST(RestorationDeathTest, OfARunNeedsItsColumns) {
+TEST(RestorationDeathTest, OfABatchNeedsItsColumns) {
   test::Contacts contacts;
   contacts.add({0, 0, 0}, {0, 0, 1}, 1, 1);
   const ContactColumns c = contacts.columns();
   const ActiveConstraint active = activate(pin_in_hole(), Pose(), 1);
   EXPECT_BROKEN(restore_batch({c.x, nullptr, c.z, c.fx, c.fy, c.fz, 1}, active),
-                "run.count == 0 || (run.x != nullptr && run.y != nullptr && run.z != nullptr)");
+                "batch.count == 0 || (batch.x != nullptr && batch.y != nullptr && batch.z != nullptr)");
   EXPECT_BROKEN(restore_batch({c.x, c.y, c.z, c.fx, c.fy, nullptr, 1}, active),
-                "run.count == 0 || (run.fx != nullptr && run.fy != nullptr && run.fz != nullptr)");
+                "batch.count == 0 || (batch.fx != nullptr && batch.fy != nullptr && batch.fz != nullptr)");
   ActiveConstraint too_much = active;
   too_much.alpha = 1.5;
   EXPECT_BROKEN(restore_batch({c.x, c.y, c.z, c.fx, c.fy, c.fz, 1}, too_much), "is_fraction(active.alpha)");
@@ -75,7 +75,7 @@ TEST(ReductionDeathTest, NeedsAnAlphaForEachConstraint) {
   const ActiveConstraint active = activate(pin_in_hole(), Pose(), 1);
   const std::array<const ActiveConstraint*, 2> holding = {&active, &active};
   const std::array<double, 1> alpha = {1};
-  EXPECT_BROKEN(restore_common(holding, alpha, kUp, kUp), "holding.size() == alpha.size()");
+  EXPECT_BROKEN(restore_common(holding, alpha, kUp, kUp), "active.size() == alpha.size()");
 }
 
 TEST(ConstraintLinkDeathTest, NeedsAVoxelSizeAPoseAndColumns) {

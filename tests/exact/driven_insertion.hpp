@@ -16,6 +16,8 @@ struct Insertion {
   double force_max = 100, torque_max = 5;
   double push = 1;  ///< multiplies the coupling's stiffness
   LoadOptions load = {};
+  BodyOptions options = {};
+  SearchThresholds thresholds = {};
 };
 
 struct Outcome {
@@ -53,7 +55,7 @@ struct Outcome {
 }
 
 [[nodiscard]] inline HeldPin pin_for(const Insertion& task) {
-  HeldPin pin(task.clearance, task.chamfer, task.spacing, task.load);
+  HeldPin pin(task.clearance, task.chamfer, task.spacing, task.load, task.options, task.thresholds);
   pin.force_max = task.force_max;
   pin.torque_max = task.torque_max;
   pin.stiffness *= task.push;

@@ -37,8 +37,8 @@ struct HeldBody {
   int iterations = 0;
 
   HeldBody(std::shared_ptr<const ExactBody> standing, std::shared_ptr<const ExactBody> held, double mass_,
-           const Vector3d& inertia)
-      : mass(mass_), inertia_B(inertia), link(std::move(standing), std::move(held)) {}
+           const Vector3d& inertia, const SearchThresholds& thresholds = {})
+      : mass(mass_), inertia_B(inertia), link(std::move(standing), std::move(held), 4096, thresholds) {}
 
   /// The velocity without contact and the matrix of the convex problem.
   void pull(const Hand& hand, Matrix6d& M, Vector6d& u0) {
@@ -102,9 +102,11 @@ struct HeldBody {
 struct HeldPin : HeldBody {
   double radius;
 
-  HeldPin(double clearance, double chamfer, double spacing, const LoadOptions& load = {})
-      : HeldBody(body_of(block_solid(chamfer), spacing, load), body_of(pin_solid(clearance), spacing, load), 1,
-                 inertia(kHoleRadius - clearance)),
+  HeldPin(double clearance, double chamfer, double spacing, const LoadOptions& load = {},
+          const BodyOptions& options = {}, const SearchThresholds& thresholds = {})
+      : HeldBody(body_of(block_solid(chamfer), spacing, load, options),
+                 body_of(pin_solid(clearance), spacing, load, options), 1, inertia(kHoleRadius - clearance),
+                 thresholds),
         radius(kHoleRadius - clearance) {}
 
   static Vector3d inertia(double radius) {

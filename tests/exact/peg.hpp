@@ -36,9 +36,8 @@ inline constexpr double kHoleRadius = 0.075, kPinLength = 0.4, kBlockHeight = 0.
 }
 
 [[nodiscard]] inline std::shared_ptr<const ExactBody> body_of(const Solid& solid, double spacing,
-                                                              const LoadOptions& load = {}) {
+                                                              const LoadOptions& load = {}, BodyOptions options = {}) {
   const Part part = load_solid(solid, load);
-  BodyOptions options;
   options.spacing = spacing;
   return std::make_shared<const ExactBody>(std::span(&part, 1), options);
 }

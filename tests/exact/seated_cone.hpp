@@ -10,11 +10,13 @@ inline constexpr double kSeatHeight = 0.06;
 inline constexpr int kSeatSteps = 1500;
 
 /// `wider`: m, the seat's radius over the taper's.
-[[nodiscard]] inline HeldBody seated_cone(double wider = 0, double spacing = 0.002) {
+[[nodiscard]] inline HeldBody seated_cone(double wider = 0, double spacing = 0.002, const BodyOptions& options = {},
+                                          const SearchThresholds& thresholds = {}) {
   const auto cone = [](double more) { return make(Solid::Kind::cone, {0.015 + more, 0.035 + more, kSeatHeight}); };
   const Solid seat = combine(Solid::Kind::difference, make(Solid::Kind::box, {0.12, 0.12, kSeatHeight}), cone(wider));
   // 20 kg/m^3; the centre of mass is taken where the origin is.
-  HeldBody held(body_of(seat, spacing), body_of(cone(0), spacing), 2.48e-3, {1.2e-6, 1.2e-6, 9.2e-7});
+  HeldBody held(body_of(seat, spacing, {}, options), body_of(cone(0), spacing, {}, options), 2.48e-3,
+                {1.2e-6, 1.2e-6, 9.2e-7}, thresholds);
   held.stiffness = 300;
   held.damping = 2 * std::sqrt(300 * 2.48e-3);
   held.angular_stiffness = 0.5;

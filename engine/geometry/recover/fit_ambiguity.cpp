@@ -15,8 +15,6 @@ constexpr std::size_t kPlacesMin = 5;
 /// By kind. Through fewer points a surface passes by chance: kinds have 3, 5, 6, 4 and 7 parameters, and a whole mesh
 /// of points to choose from.
 constexpr std::array<std::size_t, 5> kPointsMin = {3, 8, 8, 9, 14};
-constexpr double kEqualStep = 0.02;  // relative
-constexpr double kSagittaMin = 50;   // tolerances off the best plane: flatter points fit any kind
 using pinned::kFullTurn;
 
 /// Angles on a circle that are at least `apart` from each other [rad], ascending, the widest gap before the first.
@@ -43,13 +41,13 @@ std::vector<double> distinct_angles(std::vector<double> angles, double apart) {
 }
 
 /// True for five different places around a circle, or four at equal steps.
-bool determine_circle(const std::vector<double>& angles, double apart) {
+bool determine_circle(const std::vector<double>& angles, double apart, double equal_step) {
   const std::vector<double> at = distinct_angles(angles, apart);
   if (at.size() >= kPlacesMin) return true;
   if (at.size() + 1 < kPlacesMin) return false;
   const double mean = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
   for (std::size_t i = 1; i < at.size(); ++i) {
-    if (std::abs(at[i] - at[i - 1] - mean) > kEqualStep * mean) return false;
+    if (std::abs(at[i] - at[i - 1] - mean) > equal_step * mean) return false;
   }
   return true;
 }
@@ -60,13 +58,15 @@ std::size_t points_min(Kind kind) {
   return kPointsMin[static_cast<std::size_t>(kind)];
 }
 
-bool is_unambiguous(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance) {
+bool is_unambiguous(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance,
+                    const RecoverThresholds& thresholds) {
+  const double sagitta_min = thresholds.sagitta_min * tolerance;
   if (s.kind == Kind::plane) return true;
-  if (s.kind == Kind::torus && std::abs(s.a) < kSagittaMin * tolerance) return false;  // a sphere, about any axis
+  if (s.kind == Kind::torus && std::abs(s.a) < sagitta_min) return false;  // a sphere, about any axis
   if (points.size() < points_min(s.kind)) return false;
   const SurfaceValue flat = plane_through(points);
-  const bool is_curved = std::ranges::any_of(
-      points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > kSagittaMin * tolerance; });
+  const bool is_curved =
+      std::ranges::any_of(points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > sagitta_min; });
   if (!is_curved) return false;
   const Vector3d x = s.axis.unitOrthogonal(), y = s.axis.cross(x);
   std::vector<double> around, along;
@@ -80,9 +80,9 @@ bool is_unambiguous(const SurfaceValue& s, std::span<const Vector3d> points, dou
   }
   const double across_radius = s.kind == Kind::torus ? s.b : s.a;
   const auto apart = [&](double radius) { return 4 * tolerance / std::max(radius, tolerance); };
-  if (!determine_circle(around, apart(largest))) return false;
+  if (!determine_circle(around, apart(largest), thresholds.equal_step)) return false;
   if (s.kind == Kind::cylinder || s.kind == Kind::cone) return true;
-  return determine_circle(along, apart(across_radius));
+  return determine_circle(along, apart(across_radius), thresholds.equal_step);
 }
 
 }  // namespace verisim::recover

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/surface_value.hpp"
 
 namespace verisim::recover {
@@ -14,6 +15,7 @@ namespace verisim::recover {
 /// that generates the surface: by five different places around it, or by four at equal steps. A circle through three
 /// points, or through the corners of a trapezoid, is no evidence. Planes: always true.
 /// @param tolerance  m, of points from the surface
-[[nodiscard]] bool is_unambiguous(const SurfaceValue& surface, std::span<const Vector3d> points, double tolerance);
+[[nodiscard]] bool is_unambiguous(const SurfaceValue& surface, std::span<const Vector3d> points, double tolerance,
+                                  const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

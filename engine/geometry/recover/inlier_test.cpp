@@ -10,11 +10,8 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr double kNearlyTangent = 0.9;     // cosine
-constexpr double kParameterAreaMin = 0.5;  // of a triangle's own area, for its image in the surface's parameters
-constexpr double kFilletSpan = -0.2;       // cosine of 102 degrees: a fan spans at most a quarter of a tube, a fillet
-constexpr double kNoise = 4;               // tolerances: nearer to an axis, or lower, is noise
-constexpr double kSharpEdgeSlack = 30;     // tolerances: drawings are less exact than numbers
+constexpr double kFilletSpan = -0.2;  // cosine of 102 degrees: a fan spans at most a quarter of a tube, a fillet
+constexpr double kNoise = 4;          // tolerances: nearer to an axis, or lower, is noise
 
 }  // namespace
 
@@ -48,7 +45,7 @@ struct InlierTest::Corners {
 bool InlierTest::is_on_surface(std::uint32_t t) const {
   for (std::size_t i = 0; i < 3; ++i) {
     const bool on_sharp_edge = limits_.on_sharp_edge != nullptr && (*limits_.on_sharp_edge)[mesh_.triangles[t][i]];
-    const double within = (on_sharp_edge ? kSharpEdgeSlack : 1) * limits_.tolerance;
+    const double within = (on_sharp_edge ? limits_.thresholds.sharp_edge_slack : 1) * limits_.tolerance;
     if (std::abs(surface_.distance(mesh_.corner(t, i))) > within) return false;
   }
   return true;
@@ -84,8 +81,9 @@ bool InlierTest::is_inlier(std::uint32_t t) const {
   }
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-  if ((limits_.is_hole ? -along : along) <= kNearlyTangent) return false;
-  return surface_.kind == Kind::sphere || parameter_image(c).area > kParameterAreaMin * mesh_.areas[t];
+  if ((limits_.is_hole ? -along : along) <= limits_.thresholds.nearly_tangent) return false;
+  return surface_.kind == Kind::sphere ||
+         parameter_image(c).area > limits_.thresholds.parameter_area_min * mesh_.areas[t];
 }
 
 bool InlierTest::is_loose_inlier(std::uint32_t t) const {
@@ -101,7 +99,7 @@ bool InlierTest::is_loose_inlier(std::uint32_t t) const {
   if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
   if (is_sphere) {
     const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
-    return (limits_.is_hole ? -along : along) > kParameterAreaMin;
+    return (limits_.is_hole ? -along : along) > limits_.thresholds.parameter_area_min;
   }
   const ParameterImage image = parameter_image(c);
   return image.area > kNoise * limits_.tolerance * image.length;

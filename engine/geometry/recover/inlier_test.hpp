@@ -6,6 +6,7 @@
 // the flat end of a cone has all its corners on the cone.
 #pragma once
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
 #include "engine/geometry/recover/surface_value.hpp"
 
@@ -13,9 +14,10 @@ namespace verisim::recover {
 
 struct InlierLimits {
   double tolerance;                        ///< m, of corners from the surface
-  const std::vector<bool>* on_sharp_edge;  ///< per vertex: it may be off by 30 tolerances; nullptr: none may
+  const std::vector<bool>* on_sharp_edge;  ///< per vertex: it may be off by sharp_edge_slack; nullptr: none may
   double cos_step;                         ///< cosine of a triangle's largest angle around the surface
   bool is_hole;                            ///< the material is outside of the surface
+  RecoverThresholds thresholds;
 };
 
 class InlierTest {

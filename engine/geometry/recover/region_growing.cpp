@@ -11,7 +11,6 @@ namespace verisim::recover {
 namespace {
 
 constexpr int kPassesMax = 8;
-constexpr double kTightFit = 0.5;  // of the tolerance, for a region's final fit
 
 bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points, double within) {
   return std::ranges::all_of(points, [&](const Vector3d& p) { return std::abs(s.distance(p)) <= within; });
@@ -67,8 +66,8 @@ std::optional<Candidate> RegionGrowing::grow_from(const std::vector<std::uint32_
   if (best.triangles.empty()) return std::nullopt;
   const std::vector<Vector3d> points = regions_.points_of_triangles(best.triangles, inner_only);
   if (surface && passes_through(*surface, points, tolerance)) best.fit.surface = *surface;
-  if (!passes_through(best.fit.surface, points, kTightFit * tolerance)) return std::nullopt;
-  if (!is_unambiguous(best.fit.surface, points, tolerance)) return std::nullopt;
+  if (!passes_through(best.fit.surface, points, regions_.thresholds.tight_fit * tolerance)) return std::nullopt;
+  if (!is_unambiguous(best.fit.surface, points, tolerance, regions_.thresholds)) return std::nullopt;
   best.area = regions_.area_of(best.triangles);
   return best;
 }

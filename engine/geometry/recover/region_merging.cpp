@@ -9,7 +9,6 @@ namespace verisim::recover {
 namespace {
 
 constexpr std::size_t kPatchTrianglesMax = 200;  // a larger region is a surface
-constexpr double kMostlySmooth = 0.7;            // of a border's length
 constexpr std::size_t kClusterMin = 12;          // patches of a cluster
 constexpr std::size_t kTrianglesEachMax = 30;    // mean triangles of its patches
 
@@ -129,7 +128,7 @@ class FreeformPatches {
       if (beside != kNone) whole += length;  // open borders do not count
       if (is_smooth && (regions_.is_free(beside) || is_patch_[regions_.region_of(beside)])) smooth += length;
     });
-    return smooth > kMostlySmooth * whole;
+    return smooth > regions_.thresholds.mostly_smooth * whole;
   }
 
   [[nodiscard]] bool is_beside_free(std::uint32_t region) const {

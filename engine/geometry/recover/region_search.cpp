@@ -13,17 +13,14 @@ namespace verisim::recover {
 namespace {
 
 constexpr Kind kCurvedKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
-constexpr double kLargerBy = 1.001;      // in area: required of a kind that is less simple
 constexpr std::size_t kRetrySteps = 3;   // smooth sides from a new region: facets within are tried again
 constexpr std::size_t kFailedSteps = 2;  // smooth sides from a seed without a fit: facets within are not tried
-constexpr double kNarrower = 0.25;       // of a plane's width: the width of a neighbour that curves away from it
 constexpr std::size_t kFewFacets = 4;
-constexpr double kMostlySharp = 0.6;  // of a border's length
 
 class Search {
  public:
-  Search(const CanonicalMesh& mesh, double tolerance, double round_step)
-      : regions_(mesh, tolerance, round_step),
+  Search(const CanonicalMesh& mesh, double tolerance, double round_step, const RecoverThresholds& thresholds)
+      : regions_(mesh, tolerance, round_step, thresholds),
         facets_(regions_.facets.all),
         neighborhoods_(regions_),
         growing_(regions_),
@@ -91,7 +88,7 @@ class Search {
         for (const bool inner_only : {false, true}) {
           if (inner_only && kind != Kind::torus) continue;  // a cone and a sphere pass through any two circles
           std::optional<Candidate> next = growing_.grow_from(sample, kind, inner_only, seed);
-          if (next && (!best || next->area > kLargerBy * best->area)) best = std::move(next);
+          if (next && (!best || next->area > regions_.thresholds.larger_by * best->area)) best = std::move(next);
         }
       }
     }
@@ -107,7 +104,7 @@ class Search {
   /// itself; a plane that goes over into a curved surface has narrow ones.
   [[nodiscard]] bool has_plane_borders(std::uint32_t facet) const {
     return std::ranges::all_of(facets_[facet].sides, [&](const FacetSide& side) {
-      return !side.smooth || width(side.facet, side) < kNarrower * width(facet, side);
+      return !side.smooth || width(side.facet, side) < regions_.thresholds.narrower * width(facet, side);
     });
   }
 
@@ -117,7 +114,7 @@ class Search {
       all += side.length;
       if (!side.smooth) sharp += side.length;
     }
-    return sharp > kMostlySharp * all;
+    return sharp > regions_.thresholds.mostly_sharp * all;
   }
 
   /// True if facets that meet smoothly are planes: they are few, and none borders smoothly on a region. Pieces of a
@@ -193,8 +190,9 @@ class Search {
 
 }  // namespace
 
-std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step) {
-  return Search(mesh, tolerance, round_step).run();
+std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step,
+                                 const RecoverThresholds& thresholds) {
+  return Search(mesh, tolerance, round_step, thresholds).run();
 }
 
 }  // namespace verisim::recover

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/geometry/entity.hpp"
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
 
 namespace verisim::recover {
@@ -25,6 +26,8 @@ struct Region {
 /// Every triangle is in one region.
 /// @param tolerance   m, of vertices from their surface
 /// @param round_step  rad, the largest angle between neighbouring facets of one curved surface
-[[nodiscard]] std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step);
+/// @pre the tolerance is finite and above 0; so is the step
+[[nodiscard]] std::vector<Region> find_regions(const CanonicalMesh& mesh, double tolerance, double round_step,
+                                               const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

@@ -2,27 +2,26 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/recover/flat_regions.hpp"
 #include "engine/geometry/recover/surface_fit.hpp"
 
 namespace verisim::recover {
 
-namespace {
-
-constexpr double kLongerStep = 1.1;  // one chord against the mean of two, which the angle between facets measures
-
-}  // namespace
-
-Regions::Regions(const CanonicalMesh& given, double tolerance_m, double round_step)
+Regions::Regions(const CanonicalMesh& given, double tolerance_m, double round_step, const RecoverThresholds& wanted)
     : mesh(given),
       tolerance(tolerance_m),
+      thresholds(wanted),
       cos_smooth(pinned::cos(round_step)),
-      cos_step(pinned::cos(kLongerStep * round_step)),
+      cos_step(pinned::cos(thresholds.longer_step * round_step)),
       facets(facets_of(mesh, tolerance, cos_smooth)),
       on_sharp_edge_(mesh.vertices.size(), false),
       of_triangle_(mesh.triangles.size(), kNone),
       assigned_in_facet_(facets.all.size(), 0) {
+  VERISIM_ASSERT(is_positive(tolerance));
+  VERISIM_ASSERT(cos_smooth < 1);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t beside = mesh.neighbors[t][i];
@@ -45,7 +44,7 @@ double Regions::area_of(const std::vector<std::uint32_t>& triangles) const {
 
 InlierTest Regions::inlier_test(const CurvedFit& fit, std::uint32_t seed) const {
   const bool is_hole = fit.surface.gradient(mesh.centers[seed]).dot(mesh.normals[seed]) < 0;
-  return {mesh, fit.surface, {tolerance, fit.inner_only ? &on_sharp_edge_ : nullptr, cos_step, is_hole}};
+  return {mesh, fit.surface, {tolerance, fit.inner_only ? &on_sharp_edge_ : nullptr, cos_step, is_hole, thresholds}};
 }
 
 std::vector<Vector3d> Regions::points_of_triangles(const std::vector<std::uint32_t>& triangles, bool inner_only) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/geometry/entity.hpp"
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/facets.hpp"
 #include "engine/geometry/recover/inlier_test.hpp"
 
@@ -26,7 +27,7 @@ class Regions {
  public:
   /// @param tolerance   m, of vertices from their surface
   /// @param round_step  rad, see find_regions
-  Regions(const CanonicalMesh& mesh, double tolerance, double round_step);
+  Regions(const CanonicalMesh& mesh, double tolerance, double round_step, const RecoverThresholds& thresholds);
 
   [[nodiscard]] bool is_free(std::uint32_t triangle) const { return of_triangle_[triangle] == kNone; }
   /// All its triangles are free.
@@ -57,7 +58,8 @@ class Regions {
   void release(std::uint32_t region);
 
   const CanonicalMesh& mesh;
-  const double tolerance;   ///< m
+  const double tolerance;  ///< m
+  const RecoverThresholds thresholds;
   const double cos_smooth;  ///< of the largest angle between neighbouring facets of one curved surface
   const double cos_step;    ///< of the largest angle around it within one triangle
   const Facets facets;
