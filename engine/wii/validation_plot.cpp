@@ -134,7 +134,7 @@ std::string history_plot(const std::string& title, const std::vector<ErrorHistor
   constexpr double kLeft = 60;
   constexpr double kTop = 44;
   constexpr double kWidth_ = 800;
-  constexpr double kHeight_ = 280;
+  constexpr double kPlotHeight_ = 280;
   double duration = 1e-9;
   std::vector<std::string> trackers;
   for (const ErrorHistory& h : histories) {
@@ -142,15 +142,15 @@ std::string history_plot(const std::string& title, const std::vector<ErrorHistor
     if (!h.samples.empty()) duration = std::max(duration, h.samples.back().t);
   }
   std::string svg = legend(trackers, kLeft, 16) + text(kLeft + kWidth_ / 2, kTop - 8, "middle", title);
-  const auto y_of = [&](double error) { return kTop + kHeight_ * (1 - along(error)); };
+  const auto y_of = [&](double error) { return kTop + kPlotHeight_ * (1 - along(error)); };
   for (const double tick : kTicks)
     svg += line(kLeft, y_of(tick), kLeft + kWidth_, y_of(tick), "#ddd", 1) +
            text(kLeft - 6, y_of(tick) + 4, "end", cm(tick));
   constexpr int kTimeTicks = 5;
   for (int i = 0; i <= kTimeTicks; ++i) {
     const double x = kLeft + kWidth_ * i / kTimeTicks;
-    svg += line(x, kTop, x, kTop + kHeight_, "#eee", 1) +
-           text(x, kTop + kHeight_ + 15, "middle", fmt::format("{:.3g}", duration * i / kTimeTicks));
+    svg += line(x, kTop, x, kTop + kPlotHeight_, "#eee", 1) +
+           text(x, kTop + kPlotHeight_ + 15, "middle", fmt::format("{:.3g}", duration * i / kTimeTicks));
   }
   for (std::size_t h = 0; h < histories.size(); ++h) {
     const std::vector<Step> steps = steps_of(histories[h], duration);
@@ -166,9 +166,9 @@ std::string history_plot(const std::string& title, const std::vector<ErrorHistor
     };
     svg += path(&Step::bound, 0.35) + path(&Step::error, 1);
   }
-  svg += text(kLeft + kWidth_ / 2, kTop + kHeight_ + 32, "middle",
+  svg += text(kLeft + kWidth_ / 2, kTop + kPlotHeight_ + 32, "middle",
               "time [s]; position error [cm], pale: the tracker's own 95 % bound");
-  return picture(kLeft + kWidth_ + 20, kTop + kHeight_ + 42, svg);
+  return picture(kLeft + kWidth_ + 20, kTop + kPlotHeight_ + 42, svg);
 }
 
 }  // namespace verisim::wii
