@@ -11,12 +11,13 @@ namespace verisim::crossings_test {
 namespace {
 
 /// A tetrahedron in a grid of two bricks along x and one along y and z, looking outward or, every other time, inward.
-/// Corners on halves are on the very lines that are tested.
+/// Corners on halves are on the very lines that are tested; none is nearer to the grid's walls than the lists' margin.
 TriangleMesh random_tetrahedron(std::uint64_t seed, bool on_halves) {
   const RandomStream stream(seed, "tetrahedron");
   TriangleMesh mesh;
   for (std::uint64_t i = 0; i < 4; ++i) {
-    Vector3d p(16 * stream.uniform(3 * i), 8 * stream.uniform(3 * i + 1), 8 * stream.uniform(3 * i + 2));
+    const auto within = [&](double size, std::uint64_t k) { return 0.01 + (size - 0.02) * stream.uniform(3 * i + k); };
+    Vector3d p(within(16, 0), within(8, 1), within(8, 2));
     if (on_halves) p = p.array().floor() + 0.5;
     mesh.vertices.push_back(p);
   }
