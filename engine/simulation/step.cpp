@@ -11,9 +11,6 @@ namespace {
 class StageTimer {
  public:
   explicit StageTimer(StageTimes& stage_ns) : out_(stage_ns), last_(now()) {}
-  ~StageTimer() { VERISIM_ASSERT(next_ == kStageNames.size()); }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
   /// The stage is over. @pre stages end in the order of Stage, none is left out
   void done(Stage stage) {
     VERISIM_ASSERT(static_cast<std::size_t>(stage) == next_);
@@ -21,6 +18,8 @@ class StageTimer {
     out_[next_++] = static_cast<std::uint32_t>(t - last_);
     last_ = t;
   }
+  /// The frame is over. @pre every stage is
+  void done() const { VERISIM_ASSERT(next_ == kStageNames.size()); }
 
  private:
   static std::int64_t now() {
@@ -63,6 +62,7 @@ void Simulation::step() {
   left_out.tell(cost, world.time(), events);
   recording.take(world, s, cost);
   timer.done(Stage::record);
+  timer.done();
 }
 
 }  // namespace verisim
