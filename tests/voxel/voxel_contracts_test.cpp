@@ -153,7 +153,6 @@ TEST(SlotSetsDeathTest, KnowTheSetOfEverySurfaceVoxel) {
                 "std::ranges::all_of(of_voxel, [&](FeatureSetId id) { return id < sets.size(); })");
   of_voxel.pop_back();
   EXPECT_BROKEN(sets_by_slot(s.map, of_voxel, sets, 1), "of_voxel.size() == map.surface_count");
-  EXPECT_BROKEN(sets[1], "id < size()");
   EXPECT_BROKEN(FeatureSets("part", FeatureSets::kMostSets + 1), "most <= kMostSets");
 }
 
