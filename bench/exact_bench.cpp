@@ -30,9 +30,9 @@ struct FrameTimes {
   double rows = 0, samples = 0, slides = 0;
   int iterations_max = 0;
 
-  [[nodiscard]] double percentile(double share) const {
+  [[nodiscard]] double percentile(double p) const {
     std::vector<double> times = best;
-    return quantile(times, share);
+    return quantile(times, p);
   }
   void report(benchmark::State& state) const {
     state.counters["median_us"] = percentile(0.5);
@@ -100,7 +100,7 @@ void BM_DrivenInsertion(benchmark::State& state) {
   at_most(state, "p99_us", times.percentile(0.99), 100);
   state.counters["plain_voxmap_loop_us"] = plain_loop_us();
   if (task.chamfer > 0) return;  // the closed form of the overlap is that of a sharp hole
-  state.counters["overlap_share"] = overlap_max / task.clearance;
+  state.counters["overlap_per_clearance"] = overlap_max / task.clearance;
   if (overlap_max > 0.025 * task.clearance) wrong(state, "deeper than 2.5 % of the clearance");
 }
 BENCHMARK(BM_DrivenInsertion)

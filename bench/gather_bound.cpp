@@ -17,7 +17,7 @@ using Ints = hn::RebindToSigned<Floats>;
 constexpr Floats kF;
 constexpr Ints kI;
 
-HWY_INLINE hn::Vec<Ints> cell_along(const GatherBound::Frame& f, int axis, hn::Vec<Floats> x, hn::Vec<Floats> y,
+HWY_INLINE hn::Vec<Ints> cell_along(const GatherBound::Placement& f, int axis, hn::Vec<Floats> x, hn::Vec<Floats> y,
                                     hn::Vec<Floats> z) {
   const float* row = f.rotation + 3 * axis;
   const auto xy = hn::Add(hn::Mul(hn::Set(kF, row[0]), x), hn::Mul(hn::Set(kF, row[1]), y));
@@ -26,7 +26,7 @@ HWY_INLINE hn::Vec<Ints> cell_along(const GatherBound::Frame& f, int axis, hn::V
   return hn::ConvertTo(kI, inside);  // not negative: truncation is floor
 }
 
-std::uint64_t gather_all(const GatherBound::Frame& f, const Pointshell& b) {
+std::uint64_t gather_all(const GatherBound::Placement& f, const Pointshell& b) {
   const std::size_t lanes = hn::Lanes(kI);
   const auto row = hn::Set(kI, f.cells[0]);
   const auto slice = hn::Set(kI, f.cells[0] * f.cells[1]);
@@ -64,8 +64,8 @@ GatherBound::GatherBound(const Voxmap& a) : origin_(a.origin) {
   for (std::size_t i = 0; i < table_.size(); ++i) table_[i] = static_cast<std::uint8_t>(i * 167 >> 3);
 }
 
-GatherBound::Frame GatherBound::frame(const Pointshell& b, const Pose& X_AB) const {
-  Frame f{};
+GatherBound::Placement GatherBound::placement(const Pointshell& b, const Pose& X_AB) const {
+  Placement f{};
   const Matrix3d R = X_AB.rotation.toRotationMatrix() * per_metre_;
   const Vector3d t = (X_AB * b.reference - origin_) * per_metre_;
   for (int i = 0; i < 3; ++i) {
@@ -78,11 +78,11 @@ GatherBound::Frame GatherBound::frame(const Pointshell& b, const Pose& X_AB) con
 }
 
 std::uint64_t GatherBound::sum(const Pointshell& b, const Pose& X_AB) const {
-  return HWY_DYNAMIC_DISPATCH(gather_all)(frame(b, X_AB), b);
+  return HWY_DYNAMIC_DISPATCH(gather_all)(placement(b, X_AB), b);
 }
 
 std::uint64_t GatherBound::sum_plainly(const Pointshell& b, const Pose& X_AB) const {
-  const Frame f = frame(b, X_AB);
+  const Placement f = placement(b, X_AB);
   std::uint32_t total = 0;
   const std::size_t whole = b.size() / 16 * 16;
   for (std::size_t i = 0; i < whole; ++i) {

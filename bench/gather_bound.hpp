@@ -22,7 +22,7 @@ class GatherBound {
   /// The same point by point: what sum() must equal.
   [[nodiscard]] std::uint64_t sum_plainly(const Pointshell& b, const Pose& X_AB) const;
 
-  struct Frame {
+  struct Placement {
     float rotation[9];  ///< to cells of the table
     float position[3];
     std::int32_t cells[3];
@@ -30,7 +30,7 @@ class GatherBound {
   };
 
  private:
-  [[nodiscard]] Frame frame(const Pointshell& b, const Pose& X_AB) const;
+  [[nodiscard]] Placement placement(const Pointshell& b, const Pose& X_AB) const;
   std::vector<std::uint8_t> table_;
   std::int32_t cells_[3];
   Vector3d origin_;

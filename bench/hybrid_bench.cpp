@@ -54,6 +54,7 @@ void compare(benchmark::State& state, Scene scene, const std::vector<Pose>& pose
   for (const auto& [name, hybrid] :
        {std::pair{"off", hybrid::off}, {"restore", hybrid::restore}, {"blend", hybrid::blend}}) {
     scene.parameters.hybrid = hybrid;
+    scene.devices = {scenes::hand_of_brep_pin()};
     methods.push_back({name, std::make_unique<Simulation>(scene, SimulationOptions{}), PoseTimes(poses)});
   }
   for (auto _ : state) {

@@ -35,9 +35,9 @@ class PoseTimes {
   }
 
   /// Microseconds; 0.5 is the median over the poses.
-  [[nodiscard]] double percentile(double share) const {
+  [[nodiscard]] double percentile(double p) const {
     std::vector<double> times = best_;
-    return quantile(times, share);
+    return quantile(times, p);
   }
 
   /// Microseconds, over the poses.

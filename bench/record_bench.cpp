@@ -38,30 +38,59 @@ Schema schema() {
   }
   for (const char* field : {"handle_pose", "raw_pose"}) add(std::string("/state/device/omni/") + field, Dtype::f64, 7);
   add("/state/device/omni/wrench", Dtype::f64, 6);
-  for (const char* link : {"block~pin", "block~plate", "pin~plate"}) {
-    const std::string path = std::string("/state/link/") + link;
-    for (const char* field : {"/contacts", "/cache_hits", "/cache_misses"}) add(path + field, Dtype::u32, 1);
-    add(path + "/constraint", Dtype::u8, 1);
-    for (const char* field : {"/alignment", "/max_penetration"}) add(path + field, Dtype::f64, 1);
-    add(path + "/wrench", Dtype::f64, 6);
-  }
   add("/state/hash", Dtype::u64, 1);
   for (const char* field : {"points", "voxels", "lookups", "bytes"}) add(std::string("/cost/") + field, Dtype::u64, 1);
   add("/timing/frame_ns", Dtype::u64, 1);
-  add("/timing/stage_ns", Dtype::u32, 8);
+  add("/timing/stage_ns", Dtype::u32, 9);
+  add("/cost/links", Dtype::u32, 1);
+  add("/cost/pairs_met", Dtype::u32, 1);
+  const auto add_to_table = [&](const char* fact, Dtype dtype, std::size_t width) {
+    s.add({.path = std::string("/state/links/") + fact,
+           .dtype = dtype,
+           .width = width,
+           .units = "1",
+           .description = fact,
+           .enum_names = {},
+           .rows_in_frame = "/cost/links"});
+  };
+  for (const char* fact : {"frame", "pair", "contacts", "by_voxels", "cache_hits", "cache_misses"})
+    add_to_table(fact, Dtype::u32, 1);
+  add_to_table("constraint", Dtype::u8, 1);
+  for (const char* fact : {"alignment", "max_penetration"}) add_to_table(fact, Dtype::f64, 1);
+  add_to_table("wrench", Dtype::f64, 6);
+  s.bodies = {"block", "pin", "plate"};
+  s.pairs_in_frame = "/cost/pairs_met";
   return s;
 }
 
-/// Rows of numbers that do not compress and do not repeat; drawn before the clock starts.
-std::vector<std::byte> make_rows(std::size_t count, std::size_t bytes) {
-  const RandomStream random(42, "record_bench");
-  std::vector<std::byte> rows(count * bytes);
+constexpr std::uint32_t kLinks = 3;  // near in every frame
+
+/// Numbers that do not compress and do not repeat; drawn before the clock starts.
+std::vector<std::byte> make_bytes(const char* stream, std::size_t count) {
+  const RandomStream random(42, stream);
+  std::vector<std::byte> rows(count);
   for (std::size_t i = 0; i + 8 <= rows.size(); i += 8) {
     const std::uint64_t value = random.bits(i);
     std::memcpy(&rows[i], &value, sizeof value);
   }
   return rows;
 }
+
+/// What is recorded, over and over: rows, and the table's rows of each.
+struct Given {
+  std::size_t kinds = 257;
+  std::vector<std::byte> rows, table;
+  explicit Given(const Schema& s)
+      : rows(make_bytes("record_bench", kinds * s.row_bytes())),
+        table(make_bytes("record_bench links", kinds * kLinks * s.table_row_bytes())) {
+    for (const Column& c : s.columns())
+      for (std::size_t i = 0; i < kinds; ++i) {
+        const std::uint32_t count = c.path == "/cost/links" ? kLinks : 0;
+        if (c.path == "/cost/links" || c.path == s.pairs_in_frame)
+          std::memcpy(&rows[i * s.row_bytes() + c.offset], &count, sizeof count);
+      }
+  }
+};
 
 struct Measured {
   std::vector<double> loop_ns;  ///< begin_row, copying the row, end_row
@@ -80,17 +109,18 @@ double cpu_seconds(int who) {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-Measured record(const std::vector<std::byte>& rows, const Schema& s, std::size_t frames, bool paced,
-                std::size_t ring_rows) {
+Measured record(const Given& given, const Schema& s, std::size_t frames, bool paced, std::size_t ring_rows) {
   Measured m;
   m.loop_ns.reserve(frames);
-  const std::size_t kinds = rows.size() / s.row_bytes();
-  Recorder recorder(file(), s, {}, {.paced = paced, .ring_rows = ring_rows});
+  Recorder recorder(file(), s, {}, {.paced = paced, .ring_rows = ring_rows, .table_rows = kLinks * ring_rows});
+  const std::size_t table_bytes = kLinks * s.table_row_bytes();
   const double others = cpu_seconds(RUSAGE_SELF) - cpu_seconds(RUSAGE_THREAD);
   const auto start = Clock::now();
   for (std::size_t i = 0; i < frames; ++i) {
     const auto before = Clock::now();
-    std::memcpy(recorder.begin_row().data(), &rows[(i % kinds) * s.row_bytes()], s.row_bytes());
+    const std::size_t kind = i % given.kinds;
+    std::memcpy(recorder.begin_row().data(), &given.rows[kind * s.row_bytes()], s.row_bytes());
+    recorder.add_table_rows({&given.table[kind * table_bytes], table_bytes});
     recorder.end_row();
     m.loop_ns.push_back(std::chrono::duration<double, std::nano>(Clock::now() - before).count());
   }
@@ -106,18 +136,23 @@ Measured record(const std::vector<std::byte>& rows, const Schema& s, std::size_t
 }
 
 /// Is every row in the file as it was given?
-bool file_holds(const std::vector<std::byte>& rows, const Schema& s, std::size_t frames) {
+bool file_holds(const Given& given, const Schema& s, std::size_t frames) {
   const RunFile run(file());
   if (run.rows() != frames) return false;
-  const std::size_t kinds = rows.size() / s.row_bytes();
-  for (const Column& c : s.columns()) {
+  const auto holds = [&](const Column& c, const std::vector<std::byte>& rows, std::size_t row_bytes,
+                         std::size_t count) {
     const std::vector<std::byte> values = run.column(c);
-    for (std::size_t i = 0; i < frames; ++i) {
-      const std::byte* given = &rows[(i % kinds) * s.row_bytes() + c.offset];
-      if (std::memcmp(&values[i * c.bytes()], given, c.bytes()) != 0) return false;
+    if (values.size() != count * c.bytes()) return false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::byte* expected = &rows[(i * row_bytes) % rows.size() + c.offset];
+      if (std::memcmp(&values[i * c.bytes()], expected, c.bytes()) != 0) return false;
     }
-  }
-  return true;
+    return true;
+  };
+  bool all = true;
+  for (const Column& c : s.columns()) all = all && holds(c, given.rows, s.row_bytes(), frames);
+  for (const Column& c : s.table()) all = all && holds(c, given.table, s.table_row_bytes(), kLinks * frames);
+  return all;
 }
 
 void report(benchmark::State& state, const Measured& m, const Schema& s, std::size_t frames) {
@@ -128,8 +163,8 @@ void report(benchmark::State& state, const Measured& m, const Schema& s, std::si
   state.counters["rows_per_s"] = n / m.total_s;
   state.counters["close_ms"] = m.close_s * 1e3;
   state.counters["writer_cpu_ms"] = m.writer_cpu_s * 1e3;
-  state.counters["columns"] = static_cast<double>(s.columns().size());
-  state.counters["row_bytes"] = static_cast<double>(s.row_bytes());
+  state.counters["columns"] = static_cast<double>(s.columns().size() + s.table().size());
+  state.counters["row_bytes"] = static_cast<double>(s.row_bytes() + kLinks * s.table_row_bytes());
   state.counters["file_per_row_bytes"] = static_cast<double>(std::filesystem::file_size(file())) / n;
 }
 
@@ -137,10 +172,10 @@ void report(benchmark::State& state, const Measured& m, const Schema& s, std::si
 void BM_LoopNeverWaits(benchmark::State& state) {
   const Schema s = schema();
   const std::size_t frames = bench::smoke() ? 500 : 45'833;
-  const std::vector<std::byte> rows = make_rows(257, s.row_bytes());
+  const Given given(s);
   Measured m;
-  for (auto _ : state) m = record(rows, s, frames, true, frames + 1);
-  if (!file_holds(rows, s, frames)) bench::wrong(state, "the file does not hold what was recorded");
+  for (auto _ : state) m = record(given, s, frames, true, frames + 1);
+  if (!file_holds(given, s, frames)) bench::wrong(state, "the file does not hold what was recorded");
   report(state, m, s, frames);
   bench::at_most(state, "loop_ns_p50", m.loop_ns[frames / 2], 1000);
   std::filesystem::remove(file());
@@ -152,10 +187,10 @@ BENCHMARK(BM_LoopNeverWaits)->Unit(benchmark::kMillisecond)->Iterations(3)->UseR
 void BM_WriterAlone(benchmark::State& state) {
   const Schema s = schema();
   const std::size_t frames = bench::smoke() ? 500 : 45'833;
-  const std::vector<std::byte> rows = make_rows(257, s.row_bytes());
+  const Given given(s);
   Measured m;
-  for (auto _ : state) m = record(rows, s, frames, false, 0);
-  if (!file_holds(rows, s, frames)) bench::wrong(state, "the file does not hold what was recorded");
+  for (auto _ : state) m = record(given, s, frames, false, 0);
+  if (!file_holds(given, s, frames)) bench::wrong(state, "the file does not hold what was recorded");
   report(state, m, s, frames);
   std::filesystem::remove(file());
 }

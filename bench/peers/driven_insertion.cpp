@@ -71,8 +71,8 @@ double line_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& s, 
   const auto off_line = [&](const Vector3d& q) { return Vector3d(q - p - a.dot(q - p) * a); };
   const Vector3d from = off_line(s);
   const Vector3d way = off_line(t) - from;
-  const double share = way.squaredNorm() > 0 ? std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0) : 0.0;
-  return (from + share * way).norm();
+  const double fraction = way.squaredNorm() > 0 ? std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0) : 0.0;
+  return (from + fraction * way).norm();
 }
 
 /// Deepest overlap of the pin's side with the round hole below its chamfer [m], in closed form at many angles: the

@@ -5,6 +5,9 @@
 //
 // Type and shape follow from what the getter returns (Recorded below). Rows are packed without padding: first all that
 // stands under /state, so that the state of a frame is one run of bytes, then all else, each in the order of adding.
+//
+// Besides the row of every frame there is one table whose rows come and go: as many in a frame as there are subjects
+// worth one (pairs of bodies that are near each other).
 #pragma once
 
 #include <array>
@@ -33,6 +36,9 @@ struct Column {
   /// Empty: every frame adds a row. Else the path of a u32 column of the same schema: only frames where that is not 0
   /// add a row to this one (what runs at a rate of its own).
   std::string due = {};
+  /// Not empty: a column of the table. A u32 column of the same schema says how many rows each frame adds.
+  std::string rows_in_frame = {};
+  bool may_be_nan = false;  ///< f64: NaN where the value is not known. All others are finite, or the run has diverged
   [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
 };
 
@@ -90,42 +96,66 @@ struct Recorded<Wrench> {  ///< force, torque
 
 class Columns {
  public:
-  /// Declares a fact. `get` is called once a frame when the row is filled; it must not allocate. `names`: of an enum's
-  /// values or of the components (Column::enum_names). `due`: Column::due.
+  /// Declares a fact; what is returned may be added to until the next one. `get` is called once a frame when the row is
+  /// filled; it must not allocate. `names`: of an enum's values or of the components (Column::enum_names). `due`:
+  /// Column::due.
   template <std::invocable Get>
-  void add(std::string path, std::string units, std::string description, Get get, std::vector<std::string> names = {},
-           std::string due = {}) {
+  Column& add(std::string path, std::string units, std::string description, Get get,
+              std::vector<std::string> names = {}, std::string due = {}) {
     using Value = std::remove_cvref_t<std::invoke_result_t<Get>>;
     Column column{std::move(path),  Recorded<Value>::kType, Recorded<Value>::kWidth,
                   std::move(units), std::move(description), 0,
                   std::move(names), std::move(due)};
-    Facts& facts = column.path.starts_with("/state/") ? state_ : other_;
-    facts.bytes += column.bytes();
-    facts.columns.push_back(std::move(column));
-    facts.put.push_back([get = std::move(get)](std::byte*& at) { Recorded<Value>::put(at, get()); });
+    auto& facts = column.path.starts_with("/state/") ? state_ : other_;
+    return facts.add(std::move(column), [get = std::move(get)](std::byte*& at) { Recorded<Value>::put(at, get()); });
+  }
+
+  /// Declares a fact of the table's rows. `get` is called with the subject of each row. `rows_in_frame`: see Column.
+  template <std::invocable<std::size_t> Get>
+  void add_to_table(std::string path, std::string units, std::string description, Get get, std::string rows_in_frame,
+                    std::vector<std::string> names = {}) {
+    using Value = std::remove_cvref_t<std::invoke_result_t<Get, std::size_t>>;
+    Column column{std::move(path),         Recorded<Value>::kType,
+                  Recorded<Value>::kWidth, std::move(units),
+                  std::move(description),  0,
+                  std::move(names),        {},
+                  std::move(rows_in_frame)};
+    table_.add(std::move(column),
+               [get = std::move(get)](std::byte*& at, std::size_t subject) { Recorded<Value>::put(at, get(subject)); });
   }
 
   [[nodiscard]] const std::vector<Column>& state() const { return state_.columns; }
   [[nodiscard]] const std::vector<Column>& other() const { return other_.columns; }
+  [[nodiscard]] const std::vector<Column>& table() const { return table_.columns; }
   [[nodiscard]] std::size_t state_bytes() const { return state_.bytes; }
   [[nodiscard]] std::size_t other_bytes() const { return other_.bytes; }
+  [[nodiscard]] std::size_t table_bytes() const { return table_.bytes; }  ///< of one row
 
-  /// Writes state_bytes() or other_bytes() from `at` on. No allocation. About 3 ns a fact.
+  /// Writes state_bytes(), other_bytes() or table_bytes() from `at` on. No allocation. About 3 ns a fact.
   void put_state(std::byte* at) const { state_.put_all(at); }
   void put_other(std::byte* at) const { other_.put_all(at); }
+  void put_table_row(std::byte* at, std::size_t subject) const { table_.put_all(at, subject); }
 
  private:
+  template <typename... Subject>
   struct Facts {
     std::vector<Column> columns;
-    std::vector<std::function<void(std::byte*&)>> put;
+    std::vector<std::function<void(std::byte*&, Subject...)>> put;
     std::size_t bytes = 0;
-    void put_all(std::byte* at) const {
+    Column& add(Column column, std::function<void(std::byte*&, Subject...)> put_value) {
+      bytes += column.bytes();
+      columns.push_back(std::move(column));
+      put.push_back(std::move(put_value));
+      return columns.back();
+    }
+    void put_all(std::byte* at, Subject... subject) const {
       const std::byte* const end = at + bytes;
-      for (const auto& put_next : put) put_next(at);
+      for (const auto& put_next : put) put_next(at, subject...);
       VERISIM_ASSERT(at == end);
     }
   };
-  Facts state_, other_;
+  Facts<> state_, other_;
+  Facts<std::size_t> table_;
 };
 
 }  // namespace verisim

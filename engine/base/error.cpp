@@ -32,9 +32,12 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known) {
+  constexpr std::size_t kLongest = 100;  // the distance takes the product of both lengths
+  if (name.size() > kLongest) return {};
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2);  // further away is no misspelling
   for (const std::string& candidate : known) {
+    if (candidate.size() > kLongest) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance == std::max(name.size(), candidate.size())) continue;  // no letter in common
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "engine/base/error.hpp"
@@ -19,6 +20,8 @@ template <typename T>
   VERISIM_ASSERT(!values.empty());
   VERISIM_ASSERT(p >= 0);
   VERISIM_ASSERT(p <= 1);
+  if constexpr (std::is_floating_point_v<T>)
+    VERISIM_ASSERT(std::none_of(values.begin(), values.end(), [](T value) { return std::isnan(value); }));
   const auto rank = static_cast<std::ptrdiff_t>(std::ceil(p * static_cast<double>(values.size())));  // from 1
   const auto place = values.begin() + std::max<std::ptrdiff_t>(rank, 1) - 1;
   std::nth_element(values.begin(), place, values.end());

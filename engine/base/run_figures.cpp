@@ -15,16 +15,17 @@ RunFigure::Value get(const RunFigures& run) {
 
 constexpr std::array kFigures = {
     RunFigure{"scenario", "", "file name of the scenario", get<&RunFigures::scenario>},
-    RunFigure{"run_file", "", "where the run is recorded", get<&RunFigures::run_file>},
+    RunFigure{"run_file", "", "where the run is recorded", get<&RunFigures::run_file>, true},
     RunFigure{"frames", "1", "frames computed", get<&RunFigures::frames>},
     RunFigure{"simulated_s", "s", "simulated time", get<&RunFigures::simulated_s>},
-    RunFigure{"wall_s", "s", "wall clock from the first frame to the closed file", get<&RunFigures::wall_s>},
-    RunFigure{"load_s", "s", "wall clock of loading before that", get<&RunFigures::load_s>},
+    RunFigure{"wall_s", "s", "wall clock from the first frame to the closed file", get<&RunFigures::wall_s>, true},
+    RunFigure{"load_s", "s", "wall clock of loading before that", get<&RunFigures::load_s>, true},
     RunFigure{"realtime_factor", "1", "simulated time over wall clock",
-              [](const RunFigures& run) -> RunFigure::Value { return run.realtime_factor(); }},
+              [](const RunFigures& run) -> RunFigure::Value { return run.realtime_factor(); }, true},
     RunFigure{"collision_frames", "1", "frames with a contact", get<&RunFigures::collision_frames>},
-    RunFigure{"overruns", "1", "frames over 1.5 time steps", get<&RunFigures::overruns>},
-    RunFigure{"realtime_priority", "", "the system granted real-time priority", get<&RunFigures::realtime_priority>},
+    RunFigure{"overruns", "1", "frames over 1.5 time steps", get<&RunFigures::overruns>, true},
+    RunFigure{"realtime_priority", "", "the system granted real-time priority", get<&RunFigures::realtime_priority>,
+              true},
     RunFigure{"collisions", "1", "contacts, summed over all frames", get<&RunFigures::collisions>},
     RunFigure{"cache_hits", "1", "constraint look-ups that were memoized", get<&RunFigures::cache_hits>},
     RunFigure{"cache_misses", "1", "constraint look-ups that had to be recognized", get<&RunFigures::cache_misses>},
@@ -34,8 +35,9 @@ constexpr std::array kFigures = {
     RunFigure{"outcome", "", "the scenario's own word", get<&RunFigures::outcome>},
     RunFigure{"end", "", "how the run ended", get<&RunFigures::end>},
     RunFigure{"state_hash", "", "hash of every value of /state", get<&RunFigures::state_hash>},
-    RunFigure{"frame_ns", "ns", "wall clock of a frame", get<&RunFigures::frame_ns>},
-    RunFigure{"collision_frame_ns", "ns", "wall clock of a frame with contact", get<&RunFigures::collision_frame_ns>},
+    RunFigure{"frame_ns", "ns", "wall clock of a frame", get<&RunFigures::frame_ns>, true},
+    RunFigure{"collision_frame_ns", "ns", "wall clock of a frame with contact", get<&RunFigures::collision_frame_ns>,
+              true},
 };
 
 }  // namespace

@@ -46,6 +46,7 @@ struct RunFigure {
   const char* unit;
   const char* meaning;
   Value (*value)(const RunFigures&);
+  bool only_once = false;  ///< no replay computes it again: wall clock, machine, where the file was
 };
 
 /// All of them but constraints and measures, whose names are the scenario's, in the order in which JSON lists them.

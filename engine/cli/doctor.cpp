@@ -4,12 +4,13 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "engine/cli/commands.hpp"
+#include "engine/cli/json_text.hpp"
+#include "engine/cli/origin.hpp"
 #include "engine/cli/realtime_priority.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/geometry/loader.hpp"
@@ -18,13 +19,6 @@ namespace verisim::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string first_line_with(const char* file, const std::string& key) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);)
-    if (line.rfind(key, 0) == 0) return line.substr(std::min(line.size(), line.find(':') + 2));
-  return "unknown";
-}
 
 /// The shortest time between two different readings of the clock [ns].
 std::int64_t clock_step_ns() {
@@ -65,8 +59,9 @@ std::string cad_trouble() {
 ordered_json examine() {
   ordered_json j;
   j["version"] = VERISIM_VERSION;
-  j["compiler"] = __VERSION__;
-  j["cpu"] = first_line_with("/proc/cpuinfo", "model name");
+  j["commit"] = commit();
+  j["compiler"] = compiler();
+  j["cpu"] = cpu_model();
   j["cores"] = std::thread::hardware_concurrency();
   utsname system{};
   uname(&system);
@@ -91,10 +86,11 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->callback([=, &exit_code] {
     const ordered_json report = examine();
     if (*as_json)
-      std::printf("%s\n", report.dump().c_str());
+      std::printf("%s\n", json_text(report).c_str());
     else
       for (const auto& [name, value] : report.items())
-        std::printf("%-30s%s\n", name.c_str(), (value.is_string() ? value.get<std::string>() : value.dump()).c_str());
+        std::printf("%-30s%s\n", name.c_str(),
+                    (value.is_string() ? value.get<std::string>() : json_text(value)).c_str());
     exit_code = 0;
   });
 }

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
+#include "engine/cli/json_text.hpp"
 #include "engine/geometry/loader.hpp"
 #include "engine/simulation/inputs.hpp"
 #include "engine/voxel/association.hpp"
@@ -165,7 +167,7 @@ void inspect(const InspectOptions& o) {
   for (const Part& part : parts) {
     ordered_json j = json_of(part, o.density);
     for (const std::string& warning : warnings_about(part)) {
-      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), warning.c_str());
+      std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), shown(warning).c_str());
       j["notes"].push_back(warning);
     }
     if (o.voxel) {
@@ -180,7 +182,7 @@ void inspect(const InspectOptions& o) {
   report["mates"] = ordered_json::array();
   for (const Mate& mate : mating_candidates(parts)) report["mates"].push_back(json_of(mate));
   if (o.json)
-    std::printf("%s\n", report.dump().c_str());
+    std::printf("%s\n", json_text(report).c_str());
   else
     print_inspection(report);
 }

@@ -1,19 +1,59 @@
 #include "engine/cli/options.hpp"
 
+#include <charconv>
+#include <cmath>
+#include <limits>
+
 #include "engine/base/error.hpp"
 
 namespace verisim::cli {
 
+CLI::Option* add_out_options(CLI::App& command, OutOptions& out, const std::string& description) {
+  command.add_flag("--force", out.force, "Let -o replace a plain file of any kind; an input, a device, a folder never");
+  return command.add_option("-o,--out", out.path, description);
+}
+
+void add_seed_option(CLI::App& command, std::function<void(std::uint64_t)> take, const std::string& description) {
+  command
+      .add_option_function<std::string>(
+          "--seed",
+          [take = std::move(take)](const std::string& text) {
+            std::uint64_t seed = 0;
+            const char* end = text.data() + text.size();
+            const auto [stop, error] = std::from_chars(text.data(), end, seed);
+            if (error != std::errc() || stop != end)
+              throw CLI::ValidationError("--seed " + text,
+                                         "a seed is a whole number from 0 to " +
+                                             std::to_string(std::numeric_limits<std::uint64_t>::max()) +
+                                             ", in decimal digits alone");
+            take(seed);
+          },
+          description)
+      ->type_name("UINT64");
+}
+
+CLI::Validator seconds() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
+    return text + " is no number of seconds that is finite and above 0";
+  };
+  return CLI::Validator(check, "SECONDS");
+}
+
 void add_simulate_options(CLI::App& command, SimulateOptions& o) {
-  command.add_option("-o,--out", o.out, "Run file to write (default: runs/SCENARIO.h5)");
+  add_out_options(command, o.out,
+                  "Run file to write; only a run file is replaced (default: runs/SCENARIO.h5, or runs/SCENARIO-2.h5 "
+                  "while another run writes that)");
   command
       .add_option("--set", o.sets,
                   "KEY=VALUE: scenario parameter, a Lua expression; a bare word is a string; an unknown "
                   "KEY lists what the scenario knows")
       ->take_all();
   command.add_option("--bind", o.binds, "NAME=SOURCE: drive the device NAME from a trace file")->take_all();
-  command.add_option("--duration", o.duration, "Simulated seconds")->check(CLI::PositiveNumber);
-  command.add_option("--seed", o.seed, "Seed of every random stream");
+  command.add_option("--duration", o.duration, "Simulated seconds")->check(seconds());
+  add_seed_option(
+      command, [&o](std::uint64_t seed) { o.seed = seed; }, "Seed of every random stream (0 to 2^64 - 1)");
   command.add_option("--threads", o.threads, "Threads (same bits for any number)")->check(CLI::Range(1, 256));
   command.add_option("--simd", o.simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
   command.add_flag("--realtime", o.realtime, "Pace by the wall clock, with real-time priority if the system grants it");

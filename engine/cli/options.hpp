@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,8 +11,14 @@
 
 namespace verisim::cli {
 
+/// Where a command writes, and whether it may replace what is not of its kind.
+struct OutOptions {
+  std::string path;
+  bool force = false;
+};
+
 struct SimulateOptions {
-  std::string out;
+  OutOptions out;
   std::vector<std::string> sets;   ///< KEY=VALUE
   std::vector<std::string> binds;  ///< NAME=SOURCE
   std::optional<double> duration;
@@ -26,6 +33,15 @@ struct SimulateOptions {
 
 /// Declares them on a command.
 void add_simulate_options(CLI::App& command, SimulateOptions& options);
+
+/// -o/--out and --force.
+CLI::Option* add_out_options(CLI::App& command, OutOptions& out, const std::string& description);
+
+/// A seed: decimal digits alone, up to 2^64 - 1. Anything else is wrong usage that names it.
+void add_seed_option(CLI::App& command, std::function<void(std::uint64_t)> take, const std::string& description);
+
+/// Seconds: finite and above 0.
+[[nodiscard]] CLI::Validator seconds();
 
 /// "KEY=VALUE" split at the first '='. Error(usage) naming `option` if there is none or the key is empty.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> split_pairs(const std::string& option,

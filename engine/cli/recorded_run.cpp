@@ -4,9 +4,15 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
+#include "engine/cli/interrupts.hpp"
+#include "engine/cli/memory_wanted.hpp"
 #include "engine/cli/realtime_priority.hpp"
+#include "engine/record/file_replace.hpp"
+#include "engine/record/output_place.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -24,6 +30,49 @@ std::function<void(std::uint64_t)> progress_bar(std::uint64_t frames, bool wante
   };
 }
 
+/// Error(io) if the rows of all planned frames are more than the disk of `file` has room for.
+void check_room(const std::string& file, const Session& session, std::size_t row_bytes) {
+  const std::uint64_t frames = session.simulation->frames_planned();
+  std::error_code error;
+  const fs::path folder = fs::path(file).parent_path();
+  const fs::space_info space = fs::space(folder.empty() ? fs::path(".") : folder, error);
+  const double wanted = static_cast<double>(frames) * static_cast<double>(row_bytes);
+  if (error || space.capacity == 0 || wanted <= static_cast<double>(space.available)) return;
+  fail(ErrorKind::io,
+       "{}: a duration of {} s is {} frames of {} bytes, {:.1f} GB, and {:.1f} GB are free; shorten it with --duration",
+       file, static_cast<double>(frames) * session.simulation->dt(), frames, row_bytes, wanted / 1e9,
+       static_cast<double>(space.available) / 1e9);
+}
+
+/// "runs/pin.h5", "runs/pin-2.h5", "runs/pin-3.h5" …
+std::string nth_name(const std::string& file, int n) {
+  const fs::path path(file);
+  if (n == 1) return file;
+  return (path.parent_path() / (path.stem().string() + fmt::format("-{}", n) + path.extension().string())).string();
+}
+
+struct OpenRecorder {
+  std::string file;
+  std::unique_ptr<Recorder> recorder;
+};
+
+/// A recorder with a file of its own: to create it is what settles which of several runs has a name.
+OpenRecorder open_recorder(const Session& session, const RecordOptions& options, const Schema& schema) {
+  RecorderOptions recording;
+  recording.paced = options.paced;
+  recording.frames_unflushed = static_cast<std::size_t>(std::max(1.0, 0.1 / session.simulation->dt()));
+  for (int n = 1;; ++n) {
+    const std::string name = nth_name(options.file, n);
+    try {
+      const std::string file = check_output({name, OutputKind::run, options.force, {}}, session.inputs->opened());
+      check_room(file, session, schema.row_bytes());
+      return {name, std::make_unique<Recorder>(file, schema, header_of(session, options.embed), recording)};
+    } catch (const BeingWritten&) {
+      if (!options.another_name) throw;
+    }
+  }
+}
+
 }  // namespace
 
 void make_folder_of(const std::string& file) {
@@ -34,17 +83,17 @@ void make_folder_of(const std::string& file) {
 }
 
 RecordedRun record_run(Session& session, const RecordOptions& options) {
+  VERISIM_ASSERT(session.simulation != nullptr);
   Simulation& simulation = *session.simulation;
   make_folder_of(options.file);
   Schema schema;
   simulation.describe(schema);
   add_timing_columns(schema);
-  RecorderOptions recording;
-  recording.paced = options.paced;
-  recording.frames_unflushed = static_cast<std::size_t>(std::max(1.0, 0.1 / simulation.dt()));
-  Recorder recorder(options.file, schema, header_of(session, options.embed), recording);
+  const MemoryUse use(fmt::format("recording {} frames of {} bytes", simulation.frames_planned(), schema.row_bytes()));
+  const InterruptScope until_the_file_is_closed;
+  const auto [file, recorder] = open_recorder(session, options, schema);
 
-  catch_interrupts();
+  if (options.paced) recorder->make_room(simulation.prepare_all());
   LoopOptions loop;
   loop.frames = simulation.frames_planned();
   loop.paced = options.paced;
@@ -59,13 +108,15 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
           "note: the system grants no real-time priority (CAP_SYS_NICE, or `ulimit -r 1`): other work can make "
           "periods too long\n",
           stderr);
-    run.loop = run_loop(simulation, &recorder, loop);
+    run.loop = run_loop(simulation, recorder.get(), loop);
     run.loop.realtime_priority = priority.granted();
   }
   if (loop.progress) std::fprintf(stderr, "\r%60s\r", "");
-  run.figures = figures_of(session, run.loop, options.file);
+  if (options.progress)
+    for (const std::string& warning : run.loop.warnings) std::fprintf(stderr, "warning: %s\n", shown(warning).c_str());
+  run.figures = figures_of(session, run.loop, file);
   if (run.loop.end != LoopEnd::io_failed)
-    recorder.close(to_attributes(run.figures), {{"state_hash", run.figures.state_hash}});
+    recorder->close(to_attributes(run.figures), {{"state_hash", run.figures.state_hash}});
   return run;
 }
 
@@ -74,9 +125,11 @@ int exit_code_of(LoopEnd end) {
     case LoopEnd::done:
       return 0;
     case LoopEnd::interrupted:
-      return static_cast<int>(ErrorKind::interrupted);
+      return interrupted_exit_code();
     case LoopEnd::diverged:
       return static_cast<int>(ErrorKind::diverged);
+    case LoopEnd::refused:
+      return static_cast<int>(ErrorKind::input);
     case LoopEnd::io_failed:
       return static_cast<int>(ErrorKind::io);
   }

@@ -9,6 +9,8 @@ namespace verisim::cli {
 
 struct RecordOptions {
   std::string file;               ///< run file to write; its folder is made
+  bool another_name = false;      ///< while another run writes that file: FILE-2.h5, FILE-3.h5 …
+  bool force = false;             ///< replace a plain file of any kind
   bool paced = false;             ///< by the wall clock
   std::uint64_t empty_block = 0;  ///< as in LoopOptions
   bool embed = true;              ///< the content of every input goes into the run file
@@ -20,7 +22,8 @@ struct RecordedRun {
   RunFigures figures;
 };
 
-/// Runs `session` and closes the file, also if it diverged or was interrupted. Error(io) if the file cannot be made.
+/// Runs `session` and closes the file, also if it diverged or was interrupted. Error(io) if the file cannot be made or
+/// may not be replaced (record/output_place.hpp), or if the planned frames would not fit the free disk.
 [[nodiscard]] RecordedRun record_run(Session& session, const RecordOptions& options);
 
 /// Creates the folder of a file to be written if it does not exist. Error(io).

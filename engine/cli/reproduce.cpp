@@ -5,8 +5,10 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
+#include "engine/cli/json_text.hpp"
 #include "engine/cli/recorded_run.hpp"
 #include "engine/cli/stop_watch.hpp"
+#include "engine/record/file_replace.hpp"
 #include "engine/reproduce/reproductions.hpp"
 
 namespace verisim::cli {
@@ -18,13 +20,16 @@ using nlohmann::ordered_json;
 using reproduce::Reproduction;
 using reproduce::Row;
 
+constexpr const char* kDefaultFolder = "runs/reproduce";
+
 struct ReproduceOptions {
-  std::string out = "runs/reproduce";
+  std::string out;  ///< empty: kDefaultFolder, or one beside it
   std::string scenarios;
   std::vector<std::string> only;
   bool quick = false;
   bool json = false;
   bool quiet = false;
+  bool force = false;
 };
 
 /// The shipped scenarios: in the folder beside the program's own, or one further up.
@@ -37,7 +42,7 @@ std::string scenarios_folder() {
 }
 
 /// A run as `verisim run` makes it. Error(diverged, io, interrupted) if it did not come to its end.
-reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::RunRequest& request) {
+reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::RunRequest& request, bool force) {
   ScenarioOptions options;
   options.path = (fs::path(folder) / (request.scenario + ".lua")).string();
   options.sets = request.sets;
@@ -45,8 +50,9 @@ reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::Run
   options.seed = request.seed;
   auto inputs = std::make_unique<Inputs>(Inputs::live(folder, {}));
   Session session = open_session(options, std::move(inputs), 1, true);
-  RecordedRun run =
-      record_run(session, {.file = request.file, .paced = request.paced, .empty_block = request.empty_block});
+  RecordedRun run = record_run(
+      session, {.file = request.file, .force = force, .paced = request.paced, .empty_block = request.empty_block});
+  if (run.loop.end == LoopEnd::interrupted) fail(ErrorKind::interrupted, "{}: interrupted", request.file);
   if (run.loop.end != LoopEnd::done)
     fail(static_cast<ErrorKind>(exit_code_of(run.loop.end)), "{}: {}", request.file,
          run.loop.error.empty() ? run.figures.end : run.loop.error);
@@ -81,17 +87,49 @@ std::string json_of_rows(const std::vector<Row>& rows) {
     for (const std::string& file : row.runs)
       if (std::find(j["runs"].begin(), j["runs"].end(), file) == j["runs"].end()) j["runs"].push_back(file);
   }
-  return j.dump();
+  return json_text(j);
 }
+
+/// A default folder that no other process has: the first of runs/reproduce, runs/reproduce-2 … It has a mark in it.
+class OwnFolder {
+ public:
+  OwnFolder() {
+    for (int n = 1; mark_ == nullptr; ++n) {
+      path_ = n == 1 ? kDefaultFolder : fmt::format("{}-{}", kDefaultFolder, n);
+      make_folder_of(mark_path());
+      auto mark = std::make_unique<MarkedFile>(mark_path(), MarkedFile::Mark::writer);
+      if (mark->descriptor() < 0) refuse_write(mark_path(), system_cause());
+      if (mark->refused()) continue;
+      if (mark->is_at(mark_path()))
+        mark_ = std::move(mark);
+      else
+        --n;  // its former owner has just taken it away
+    }
+  }
+  ~OwnFolder() {
+    std::error_code ignored;
+    fs::remove(mark_path(), ignored);
+  }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  [[nodiscard]] std::string mark_path() const { return path_ + "/.in_use"; }
+  std::string path_;
+  std::unique_ptr<MarkedFile> mark_;
+};
 
 bool is_wanted(const ReproduceOptions& o, const Reproduction& r) {
   return o.only.empty() || std::find(o.only.begin(), o.only.end(), r.id) != o.only.end();
 }
 
 void run_reproduce(const ReproduceOptions& o) {
-  reproduce::Workshop workshop{o.quick, o.out, {}};
+  const std::unique_ptr<OwnFolder> own = o.out.empty() ? std::make_unique<OwnFolder>() : nullptr;
+  reproduce::Workshop workshop{o.quick, own ? own->path() : o.out, {}};
   const std::string scenarios = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
-  workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request); };
+  workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request, o.force); };
+  workshop.force = o.force;
   make_folder_of(workshop.file("any"));
   std::vector<Row> rows;
   for (const Reproduction& r : reproduce::reproductions()) {
@@ -115,7 +153,10 @@ std::vector<std::string> ids() {
 void add_reproduce(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("reproduce", "The dissertation's figures, measured again side by side");
   auto o = std::make_shared<ReproduceOptions>();
-  command->add_option("-o,--out", o->out, "Folder for run files and tables")->capture_default_str();
+  command->add_option(
+      "-o,--out", o->out,
+      "Folder for run files and tables (default: runs/reproduce, or runs/reproduce-2 while another writes there)");
+  command->add_flag("--force", o->force, "Replace plain files of any kind in that folder; devices and folders never");
   command->add_option("--only", o->only, "Only these (repeatable)")->take_all()->check(CLI::IsMember(ids()));
   command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");
   command->add_flag("--quick", o->quick, "Shorter runs: under 45 s in all");

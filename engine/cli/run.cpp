@@ -2,9 +2,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "engine/base/error.hpp"
+#include "engine/base/user_file.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/recorded_run.hpp"
+#include "engine/cli/streams.hpp"
 #include "engine/contact/query.hpp"
 
 namespace verisim::cli {
@@ -16,7 +19,19 @@ std::string default_run_file(const std::string& scenario) {
   return (fs::path("runs") / fs::path(scenario).stem()).string() + ".h5";
 }
 
-int run(const std::string& scenario, const SimulateOptions& o) {
+/// Of a symbolic link what it leads to: its folder is the scenario's, with the models and scripts in it.
+std::string end_of_links(const std::string& scenario) {
+  const std::string type = other_than_plain(scenario);
+  if (!type.empty()) fail(ErrorKind::input, "{}: is {}, a file is wanted; name a scenario", scenario, type);
+  std::error_code error;
+  if (!fs::is_symlink(scenario, error)) return scenario;
+  const fs::path end = fs::canonical(scenario, error);
+  if (error) fail(ErrorKind::input, "{}: a symbolic link that leads nowhere ({})", scenario, error.message());
+  return end.string();
+}
+
+int run(const std::string& named, const SimulateOptions& o) {
+  const std::string scenario = end_of_links(named);
   use_simd_target(o.simd);
   ScenarioOptions options;
   options.path = scenario;
@@ -26,10 +41,14 @@ int run(const std::string& scenario, const SimulateOptions& o) {
   options.duration = o.duration;
   auto inputs = std::make_unique<Inputs>(Inputs::live(fs::path(scenario).parent_path().string(), named_paths(options)));
   Session session = open_session(options, std::move(inputs), o.threads, o.quiet);
-  const std::string file = o.out.empty() ? default_run_file(scenario) : o.out;
-  const RecordedRun run =
-      record_run(session, {.file = file, .paced = o.realtime, .embed = !o.no_embed, .progress = !o.quiet});
-  if (!run.loop.error.empty()) std::fprintf(stderr, "error: %s\n", run.loop.error.c_str());
+  const bool is_default = o.out.path.empty();
+  const RecordedRun run = record_run(session, {.file = is_default ? default_run_file(scenario) : o.out.path,
+                                               .another_name = is_default,
+                                               .force = o.out.force,
+                                               .paced = o.realtime,
+                                               .embed = !o.no_embed,
+                                               .progress = !o.quiet});
+  if (!run.loop.error.empty()) print_error(run.loop.error.c_str());
   if (o.json)
     std::printf("%s\n", to_json(run.figures).c_str());
   else if (!o.quiet)

@@ -3,26 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <thread>
 
 #include "engine/base/error.hpp"
+#include "engine/cli/interrupts.hpp"
 
 namespace verisim::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void on_interrupt(int signal) {
-  if (interrupted != 0) {  // asked twice: do not wait for the frame
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
-  interrupted = 1;
-}
 
 std::uint32_t clamped_ns(Clock::duration d) {
   const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(d).count();
@@ -54,12 +44,26 @@ Columns declare(const Timing& timing) {
 class RowSink {
  public:
   RowSink(const Simulation& simulation, Recorder* recorder, const Timing& timing)
-      : simulation_(simulation), recorder_(recorder), timing_(declare(timing)) {}
+      : simulation_(simulation), recorder_(recorder), timing_(declare(timing)) {
+    Schema schema;
+    simulation.describe(schema);
+    row_bytes_ = schema.row_bytes() + timing_.other_bytes();
+  }
+  /// Between frames, after Simulation::prepare().
+  void prepare() {
+    if (recorder_ == nullptr) return;
+    const std::vector<BodyPair>& pairs = simulation_.pairs();
+    if (pairs_ == pairs.size()) return;
+    recorder_->make_room(pairs.size());
+    for (; pairs_ < pairs.size(); ++pairs_) recorder_->pair(pairs[pairs_]);
+  }
   void take() {
     if (recorder_ == nullptr) return;
     const std::span<std::byte> row = recorder_->begin_row();
+    VERISIM_ASSERT(row.size() == row_bytes_);
     simulation_.write_row(row.data());
     timing_.put_other(row.data() + row.size() - timing_.other_bytes());
+    recorder_->add_table_rows(simulation_.table_rows());
     recorder_->end_row();
     for (const Event& event : simulation_.events()) recorder_->event(event.time, event.kind, event.text);
   }
@@ -68,6 +72,8 @@ class RowSink {
   const Simulation& simulation_;
   Recorder* recorder_;
   Columns timing_;
+  std::size_t pairs_ = 0;  ///< handed over so far
+  std::size_t row_bytes_ = 0;
 };
 
 /// The wall clock's schedule: when each frame starts if the loop is paced, and which periods were too long.
@@ -109,7 +115,7 @@ class Blocks {
     result_.block_overruns.push_back(static_cast<std::uint32_t>(result_.overruns - counted_));
     counted_ = result_.overruns;
     std::uint32_t empty = 0;
-    for (std::uint64_t i = 0; i < frames_ && interrupted == 0; ++i) {
+    for (std::uint64_t i = 0; i < frames_ && !was_interrupted(); ++i) {
       pace.wait();
       empty += pace.too_long(pace.period()) ? 1 : 0;
     }
@@ -122,15 +128,6 @@ class Blocks {
 };
 
 }  // namespace
-
-void catch_interrupts() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-}
-
-bool was_interrupted() {
-  return interrupted != 0;
-}
 
 void add_timing_columns(Schema& schema) {
   const Timing none;
@@ -149,7 +146,9 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
   Clock::time_point last_progress = start;
   Pace pace(simulation.dt(), options.paced);
   try {
-    for (std::uint64_t i = 0; i < options.frames && interrupted == 0; ++i) {
+    for (std::uint64_t i = 0; i < options.frames && !was_interrupted(); ++i) {
+      simulation.prepare();
+      rows.prepare();
       const Clock::time_point begin = pace.wait();
       simulation.step();
       const Clock::time_point end = Clock::now();
@@ -159,6 +158,8 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
       result.frame_ns.push_back(timing.frame_ns);
       if (simulation.cost().contacts > 0) result.collision_frame_ns.push_back(timing.frame_ns);
       rows.take();
+      for (const Event& event : simulation.events())
+        if (i > 0 && event.kind == "hybrid") result.warnings.push_back(event.text);  // before: said when it was loaded
       simulation.clear_events();
       if (options.progress && end - last_progress > std::chrono::milliseconds(200)) {
         options.progress(i + 1);
@@ -167,10 +168,21 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
       if (options.finished && options.finished()) break;
       blocks.after_frame(i + 1, pace);
     }
-    if (interrupted != 0) result.end = LoopEnd::interrupted;
+    if (was_interrupted()) result.end = LoopEnd::interrupted;
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::diverged && error.kind() != ErrorKind::io) throw;
-    result.end = error.kind() == ErrorKind::diverged ? LoopEnd::diverged : LoopEnd::io_failed;
+    switch (error.kind()) {
+      case ErrorKind::diverged:
+        result.end = LoopEnd::diverged;
+        break;
+      case ErrorKind::io:
+        result.end = LoopEnd::io_failed;
+        break;
+      case ErrorKind::input:
+        result.end = LoopEnd::refused;
+        break;
+      default:
+        throw;
+    }
     result.error = error.what();
   }
   result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();

@@ -19,11 +19,12 @@ struct LoopOptions {
   std::function<void(std::uint64_t)> progress;  ///< receives the frames done, about five times a second; may be empty
 };
 
-enum class LoopEnd { done, interrupted, diverged, io_failed };
+enum class LoopEnd { done, interrupted, diverged, io_failed, refused };  ///< refused: a body that came near
 
 struct LoopResult {
   LoopEnd end = LoopEnd::done;
-  std::string error;  ///< for diverged and io_failed
+  std::string error;                  ///< for diverged, io_failed and refused
+  std::vector<std::string> warnings;  ///< methods that were asked for and cannot act on a pair that met on the way
   std::uint64_t overruns = 0;
   std::vector<std::uint32_t> block_overruns;        ///< of each whole block of frames, if empty blocks are measured
   std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block after each
@@ -36,13 +37,9 @@ struct LoopResult {
 /// Adds the /timing columns behind the simulation's own.
 void add_timing_columns(Schema& schema);
 
-/// Runs until `frames` are done, the scenario has finished, Ctrl-C, divergence, or the recorder failed. `recorder` may
-/// be null; its schema is the simulation's, then the timing columns. The loop itself allocates nothing.
+/// Runs until `frames` are done, the scenario has finished, a signal (interrupts.hpp), divergence, or the recorder
+/// failed. `recorder` may be null. The loop itself allocates nothing.
+/// @pre the recorder's schema is the simulation's, then the timing columns
 [[nodiscard]] LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOptions& options);
-
-/// Ctrl-C and SIGTERM from now on ask the loop to stop after the frame; a second one ends the process.
-void catch_interrupts();
-/// True if a signal has asked to stop. For loops other than run_loop.
-[[nodiscard]] bool was_interrupted();
 
 }  // namespace verisim::cli

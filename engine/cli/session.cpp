@@ -2,25 +2,57 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/text.hpp"
+#include "engine/cli/json_text.hpp"
+#include "engine/cli/memory_wanted.hpp"
+#include "engine/cli/origin.hpp"
 #include "engine/cli/stop_watch.hpp"
 
 namespace verisim::cli {
 
 using nlohmann::json;
 
+namespace {
+
+Attribute whole_number(std::uint64_t n) {
+  if (n <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) return static_cast<std::int64_t>(n);
+  return n;
+}
+
+/// Error if the duration is shorter than a frame or has more frames than can be numbered; of the command line's, wrong
+/// usage.
+void check_duration(const SimulationParameters& parameters, bool from_command_line) {
+  constexpr double kFramesMax = 1e9;  // as Simulation::frames_planned has it
+  if (!parameters.duration) return;
+  const double frames = *parameters.duration / parameters.timestep;
+  const ErrorKind kind = from_command_line ? ErrorKind::usage : ErrorKind::input;
+  const char* name = from_command_line ? "--duration" : "duration";
+  if (!(frames >= 0.5))
+    fail(kind, "{} {} s is shorter than one frame of {} s; make it at least that", name, *parameters.duration,
+         parameters.timestep);
+  if (!(frames <= kFramesMax))
+    fail(kind, "{} {} s is {:.4g} frames of {} s, more than the {:.0f} that a run may have; shorten it", name,
+         *parameters.duration, frames, parameters.timestep, kFramesMax);
+}
+
+}  // namespace
+
 Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet) {
   const StopWatch watch;
+  const MemoryUse use("building the scene of " + options.path);
   Session session;
   session.options = options;
   session.inputs = std::move(inputs);
   session.scenario = std::make_unique<Scenario>(options, *session.inputs);
   Scene scene = session.scenario->take_scene();
   session.seed = scene.parameters.seed;
+  check_duration(scene.parameters, options.duration.has_value());
   std::vector<std::string> notices = session.scenario->notices();
   for (const BodyDescription& body : scene.bodies)
     for (const Part& part : body.parts)
@@ -31,7 +63,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
                         "' is driven by nothing and stays at its home pose; --bind drives it");
   session.simulation = std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads});
   const auto warn = [&](const std::string& text) {
-    if (!quiet) std::fprintf(stderr, "warning: %s\n", text.c_str());
+    if (!quiet) std::fprintf(stderr, "warning: %s\n", shown(text).c_str());
   };
   for (const Event& event : session.simulation->events())
     if (event.kind == "hybrid") warn(event.text);  // a method that was asked for and cannot act on a pair
@@ -65,7 +97,7 @@ std::string invocation_json(const ScenarioOptions& options) {
   j["bind"] = options.binds;
   if (options.seed) j["seed"] = *options.seed;
   if (options.duration) j["duration"] = *options.duration;
-  return j.dump();
+  return json_text(j);
 }
 
 ScenarioOptions options_from_header(const RunHeader& header) {
@@ -87,14 +119,16 @@ ScenarioOptions options_from_header(const RunHeader& header) {
 }
 
 RunHeader header_of(const Session& session, bool embed) {
+  VERISIM_ASSERT(session.inputs != nullptr && session.scenario != nullptr && session.simulation != nullptr);
   RunHeader header;
   const std::string& path = session.options.path;
-  header.attributes["format"] = "verisim-run";
-  header.attributes["format_version"] = std::int64_t{1};
   header.attributes["version"] = VERISIM_VERSION;
+  header.attributes["commit"] = commit();
+  header.attributes["compiler"] = compiler();
+  header.attributes["cpu"] = cpu_model();
   header.attributes["scenario"] = std::filesystem::path(path).filename().string();
   header.attributes["parameters"] = session.scenario->parameters_json();
-  header.attributes["seed"] = static_cast<std::int64_t>(session.seed);
+  header.attributes["seed"] = whole_number(session.seed);
   header.attributes["dt"] = session.simulation->dt();
   header.attributes["invocation"] = invocation_json(session.options);
   header.files = session.inputs->files();

@@ -10,7 +10,7 @@
 
 namespace verisim::cli {
 
-/// One scenario in one simulation.
+/// One scenario in one simulation. Of all that take one: @pre open_session() made it.
 struct Session {
   std::unique_ptr<Inputs> inputs;
   std::unique_ptr<Scenario> scenario;

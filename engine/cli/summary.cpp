@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
 #include "engine/base/quantile.hpp"
+#include "engine/cli/json_text.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -14,20 +16,6 @@ using nlohmann::ordered_json;
 RunFigures::Times times_of(std::vector<std::uint32_t>& ns) {
   if (ns.empty()) return {};
   return {quantile(ns, 0.5), quantile(ns, 0.99), quantile(ns, 1)};
-}
-
-const char* name_of(LoopEnd end) {
-  switch (end) {
-    case LoopEnd::done:
-      return "done";
-    case LoopEnd::interrupted:
-      return "interrupted";
-    case LoopEnd::diverged:
-      return "diverged";
-    case LoopEnd::io_failed:
-      return "output failed";
-  }
-  return "";
 }
 
 ordered_json json_of_figure(const RunFigure::Value& value) {
@@ -45,7 +33,24 @@ ordered_json json_of_figure(const RunFigure::Value& value) {
 
 }  // namespace
 
+const char* name_of(LoopEnd end) {
+  switch (end) {
+    case LoopEnd::done:
+      return "done";
+    case LoopEnd::interrupted:
+      return "interrupted";
+    case LoopEnd::diverged:
+      return "diverged";
+    case LoopEnd::io_failed:
+      return "output failed";
+    case LoopEnd::refused:
+      return "refused";
+  }
+  return "";
+}
+
 RunFigures figures_of(const Session& session, LoopResult& loop, const std::string& run_file) {
+  VERISIM_ASSERT(session.scenario != nullptr && session.simulation != nullptr);
   const Simulation& simulation = *session.simulation;
   RunFigures s;
   s.scenario = std::filesystem::path(session.options.path).filename().string();
@@ -83,7 +88,7 @@ std::string to_json(const RunFigures& run) {
   for (const auto& [name, frames] : run.constraints) j["constraints"][name] = frames;
   j["measures"] = ordered_json::object();
   for (const Measure& m : run.measures) j["measures"][m.name] = {{"value", m.value}, {"unit", m.unit}};
-  return j.dump();
+  return json_text(j);
 }
 
 std::string to_table(const RunFigures& run) {

@@ -11,6 +11,7 @@
 
 namespace verisim::cli {
 
+[[nodiscard]] const char* name_of(LoopEnd end);
 [[nodiscard]] RunFigures figures_of(const Session& session, LoopResult& loop, const std::string& run_file);
 [[nodiscard]] std::string to_json(const RunFigures& run);
 [[nodiscard]] std::string to_table(const RunFigures& run);

@@ -6,8 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
+#include "engine/cli/json_text.hpp"
 #include "engine/cli/options.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/record/synth.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/simulation/inputs.hpp"
@@ -57,11 +60,12 @@ ordered_json describe(const Trace& trace) {
 void print_trace_info(const ordered_json& j) {
   for (const auto& [name, value] : j.items()) {
     if (name == "columns") continue;
-    std::printf("%-20s%s\n", name.c_str(), (value.is_string() ? value.get<std::string>() : value.dump()).c_str());
+    std::printf("%-20s%s\n", name.c_str(),
+                shown(value.is_string() ? value.get<std::string>() : json_text(value)).c_str());
   }
   std::printf("%-20s%14s%14s\n", "column", "min", "max");
   for (const auto& [name, range] : j["columns"].items())
-    std::printf("%-20s%14.6g%14.6g\n", name.c_str(), range["min"].get<double>(), range["max"].get<double>());
+    std::printf("%-20s%14.6g%14.6g\n", shown(name).c_str(), range["min"].get<double>(), range["max"].get<double>());
 }
 
 void add_info(CLI::App& trace, int& exit_code) {
@@ -80,7 +84,7 @@ void add_info(CLI::App& trace, int& exit_code) {
   command->callback([=, &exit_code] {
     const ordered_json report = describe(parse_trace(o->file, content_of(o->file), "", o->limits));
     if (o->json)
-      std::printf("%s\n", report.dump().c_str());
+      std::printf("%s\n", json_text(report).c_str());
     else
       print_trace_info(report);
     exit_code = 0;
@@ -89,7 +93,8 @@ void add_info(CLI::App& trace, int& exit_code) {
 
 void add_convert(CLI::App& trace, int& exit_code) {
   struct Options {
-    std::string in, out;
+    std::string in;
+    OutOptions out;
     std::vector<std::string> maps;
     ConvertOptions convert;
     TraceLimits limits;
@@ -97,7 +102,7 @@ void add_convert(CLI::App& trace, int& exit_code) {
   auto* command = trace.add_subcommand("convert", "A foreign CSV, or a trace in the other format, to a trace");
   auto o = std::make_shared<Options>();
   command->add_option("FILE", o->in, "Foreign CSV, or a trace")->required();
-  command->add_option("-o,--out", o->out, "Trace to write, .csv or .h5")->required();
+  add_out_options(*command, o->out, "Trace to write, .csv or .h5; only a trace is replaced")->required();
   command->add_option("--kind", o->convert.kind, "haptic, wii or encoder");
   command
       ->add_option("--map", o->maps, "TARGET=COLUMN*SCALE+OFFSET, COLUMN a name or a number from 1; TARGET=:CONSTANT")
@@ -114,13 +119,15 @@ void add_convert(CLI::App& trace, int& exit_code) {
   command->footer(
       "Example: verisim trace convert q1a_rigid.csv -o rigid.csv --time t_s --every 2 --map px=x_m_rad*0.075");
   command->callback([=, &exit_code] {
-    const std::string content = content_of(o->in);
+    Inputs inputs = Inputs::live(".", {o->in});
+    const std::string& content = inputs.read(o->in);
+    const std::string out = check_output({o->out.path, OutputKind::trace, o->out.force, {}}, inputs.opened());
     if (o->maps.empty()) {
-      write_trace(o->out, parse_trace(o->in, content, "", o->limits));
+      write_trace(out, parse_trace(o->in, content, "", o->limits));
     } else {
       for (const std::string& map : o->maps) o->convert.mappings.push_back(parse_mapping(map));
       if (o->convert.source.empty()) o->convert.source = std::filesystem::path(o->in).filename().string();
-      write_trace(o->out, convert_csv(o->in, content, o->convert));
+      write_trace(out, convert_csv(o->in, content, o->convert));
     }
     exit_code = 0;
   });
@@ -128,16 +135,18 @@ void add_convert(CLI::App& trace, int& exit_code) {
 
 void add_synth(CLI::App& trace, int& exit_code) {
   struct Options {
-    std::string kind, out;
+    std::string kind;
+    OutOptions out;
     std::vector<std::string> sets;
     std::uint64_t seed = 1;
   };
   auto* command = trace.add_subcommand("synth", "Makes a trace from a formula");
   auto o = std::make_shared<Options>();
   command->add_option("KIND", o->kind, "What to make: " + synthesizer_help())->required();
-  command->add_option("-o,--out", o->out, "Trace to write, .csv or .h5")->required();
+  add_out_options(*command, o->out, "Trace to write, .csv or .h5; only a trace is replaced")->required();
   command->add_option("--set", o->sets, "KEY=NUMBER: a parameter of the kind")->take_all();
-  command->add_option("--seed", o->seed, "Seed of its random streams");
+  add_seed_option(
+      *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of its random streams (0 to 2^64 - 1)");
   command->footer("Example: verisim trace synth insertion -o insert.csv --set depth=0.3");
   command->callback([=, &exit_code] {
     std::map<std::string, double> parameters;
@@ -147,7 +156,8 @@ void add_synth(CLI::App& trace, int& exit_code) {
       if (end == value.c_str() || *end != '\0')
         fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
     }
-    write_trace(o->out, synthesize(o->kind, parameters, o->seed));
+    const std::string out = check_output({o->out.path, OutputKind::trace, o->out.force, {}});
+    write_trace(out, synthesize(o->kind, parameters, o->seed));
     exit_code = 0;
   });
 }

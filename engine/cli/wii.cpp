@@ -5,6 +5,8 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
+#include "engine/cli/json_text.hpp"
+#include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/wii/coverage.hpp"
 #include "engine/wii/place.hpp"
@@ -84,7 +86,7 @@ void run_place(const PlaceCommand& c) {
                             {"expected_error_m", best.error},
                             {"heads", options.heads.size()},
                             {"coverage", coverage}};
-    std::printf("%s\n", j.dump().c_str());
+    std::printf("%s\n", json_text(j).c_str());
     return;
   }
   std::printf("place      %.3f %.3f %.3f m, heading %.1f, pitch %.1f deg\n", p.x(), p.y(), p.z(),
@@ -113,7 +115,8 @@ void add_place(CLI::App& wii_command, int& exit_code) {
       ->check(CLI::Range(1.0, 170.0));
   command->add_option("--range", o->range, "Distances for eq. 2.1 and 2.2, m")->expected(2);
   command->add_option("--samples", o->samples, "Heads in the Monte-Carlo count")->check(CLI::PositiveNumber);
-  command->add_option("--seed", o->seed, "Seed of heads and count");
+  add_seed_option(
+      *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of heads and count (0 to 2^64 - 1)");
   command->add_flag("--json", o->json, "One JSON object on stdout");
   command->footer(
       "Example: verisim wii place --head 0 1.2 1 --screen 0 1.2 0 --room-min -0.6 0.7 -0.3 --room-max 0.6 1.7 0");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/user_file.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/wii/report_source.hpp"
 
@@ -15,8 +16,9 @@ void add_wii_track(CLI::App& wii_command, int& exit_code);
 void add_wii_serve(CLI::App& wii_command, int& exit_code);
 void add_wii_listen(CLI::App& wii_command, int& exit_code);
 
-/// A wii trace that the command line names. Error(input).
-[[nodiscard]] wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits);
+/// A wii trace that the command line names. Error(input). Adds to `opened` which file it is.
+[[nodiscard]] wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits,
+                                           std::vector<FileIdentity>* opened = nullptr);
 /// The trackers that need `remotes` remotes: as many traces.
 [[nodiscard]] std::vector<std::string> trackers_of(int remotes);
 

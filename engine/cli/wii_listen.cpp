@@ -6,11 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
-#include "engine/cli/run_loop.hpp"
+#include "engine/base/text.hpp"
+#include "engine/cli/interrupts.hpp"
+#include "engine/cli/json_text.hpp"
+#include "engine/cli/options.hpp"
 #include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/script/wii_recording.hpp"
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
@@ -21,7 +24,8 @@ namespace {
 constexpr int kWait = 50;  // ms
 
 struct ListenCommand {
-  std::string remote, out, poses;
+  std::string remote, poses;
+  OutOptions out;
   std::string tracker = "geometric";
   std::string leds;
   std::vector<double> fov;
@@ -84,7 +88,7 @@ void listen_to(vrpn::Client& client, const ListenCommand& c, ChannelRecord& reco
       if (message.type == vrpn::kAnalog) record.add(message);
       if (message.type == vrpn::kText)
         if (const auto text = vrpn::decode_text(message.payload); text && text->severity > 0)
-          std::fprintf(stderr, "%s: %s\n", c.remote.c_str(), text->text.c_str());
+          std::fprintf(stderr, "%s: %s\n", c.remote.c_str(), shown(text->text).c_str());
     });
     if (was_connected && !client.connected()) return;
     was_connected = was_connected || client.connected();
@@ -103,31 +107,37 @@ std::string poses_of(const wii::Recording& recording, const std::string& tracker
 }
 
 int listen(const ListenCommand& c) {
-  if (c.out.empty() && c.poses.empty())
+  if (c.out.path.empty() && c.poses.empty())
     fail(ErrorKind::usage, "wii listen: nothing to write; give -o TRACE, --poses CSV, or both");
+  if (c.out.path == c.poses)
+    fail(ErrorKind::usage, "wii listen: -o and --poses both name {}; give each a file of its own", c.poses);
   ChannelRecord record(c);
   wii::TrackerSettings settings =
       wii_settings_of(c.remote, record.trace());  // doubts --leds and --fov before listening
   if (!c.poses.empty()) (void)wii::make_tracker(c.tracker, settings);
+  const std::string out = c.out.path.empty() ? "" : check_output({c.out.path, OutputKind::trace, c.out.force, {}});
+  if (!c.poses.empty()) (void)check_output({c.poses, OutputKind::text, c.out.force, kPoseHeader});
   vrpn::Client client(vrpn::parse_remote_name(c.remote), !c.no_udp);
-  catch_interrupts();
+  const InterruptScope until_it_is_written;
   listen_to(client, c, record);
 
   const std::size_t reports = record.trace().rows();
+  if (reports == 0 && was_interrupted()) return interrupted_exit_code();
   if (reports == 0)
     fail(ErrorKind::input, "{}: no report with {} channels came ({} others did); is it the analog device?", c.remote,
          wii::kChannelsMin, record.left_out());
-  if (!c.out.empty()) write_trace(c.out, record.trace());
-  if (!c.poses.empty()) write_file(c.poses, poses_of(wii_recording_of(c.remote, record.trace()), c.tracker));
+  if (!out.empty()) write_trace(out, record.trace());
+  if (!c.poses.empty())
+    write_text(c.poses, poses_of(wii_recording_of(c.remote, record.trace()), c.tracker), c.out.force);
   if (c.json) {
     const nlohmann::ordered_json j = {
         {"reports", reports}, {"left_out", record.left_out()}, {"interrupted", was_interrupted()}};
-    std::printf("%s\n", j.dump().c_str());
+    std::printf("%s\n", json_text(j).c_str());
   } else {
     std::printf("took %zu reports; %llu could not be kept\n", reports,
                 static_cast<unsigned long long>(record.left_out()));
   }
-  return was_interrupted() ? static_cast<int>(ErrorKind::interrupted) : 0;
+  return was_interrupted() ? interrupted_exit_code() : 0;
 }
 
 }  // namespace
@@ -137,15 +147,14 @@ void add_wii_listen(CLI::App& wii_command, int& exit_code) {
   auto o = std::make_shared<ListenCommand>();
   command->add_option("DEVICE", o->remote, "WiiMote0@HOST, WiiMote0@HOST:PORT, or WiiMote0@tcp://HOST:PORT")
       ->required();
-  command->add_option("-o,--out", o->out, "Wii trace to write, .csv or .h5");
+  add_out_options(*command, o->out, "Wii trace to write, .csv or .h5; only a trace is replaced");
   command->add_option("--poses", o->poses, "CSV of a tracker's poses, as wii track writes it");
   command->add_option("--tracker", o->tracker, "Which tracker")->check(CLI::IsMember(trackers_of(1)));
   command->add_option("--leds", o->leds, "LEDs of the glasses, as in a trace: 'x y z; x y z'");
   command->add_option("--fov", o->fov, "Field of view of that remote, degrees")->expected(2);
   command->add_option("--rate", o->rate, "Nominal rate to write into the trace, 1/s")->check(CLI::PositiveNumber);
-  command->add_option("--duration", o->duration, "Stop after this many seconds")->check(CLI::PositiveNumber);
-  command->add_option("--patience", o->patience, "Give up if no server answers for so many seconds")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--duration", o->duration, "Stop after this many seconds")->check(seconds());
+  command->add_option("--patience", o->patience, "Give up if no server answers for so many seconds")->check(seconds());
   command->add_flag("--no-udp", o->no_udp, "Have reports sent by TCP");
   command->add_flag("--json", o->json, "One JSON object on stdout at the end");
   command->footer("Example: verisim wii listen WiiMote0@localhost -o head.csv --duration 30");

@@ -6,7 +6,9 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/head_server.hpp"
-#include "engine/cli/run_loop.hpp"
+#include "engine/cli/interrupts.hpp"
+#include "engine/cli/json_text.hpp"
+#include "engine/cli/options.hpp"
 #include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
@@ -91,7 +93,7 @@ int serve(const ServeCommand& c) {
   const std::unique_ptr<wii::ReportSource> source = source_of(c);
   const std::unique_ptr<wii::Tracker> tracker = wii::make_tracker(c.tracker, source->settings());
   HeadServer head(vrpn::resolve(c.host, c.port), c.devices);
-  catch_interrupts();
+  const InterruptScope until_clients_are_told;
   // On stdout and at once: whoever asked for port 0 reads here which one it became.
   std::FILE* announce = c.json ? stderr : stdout;
   std::fprintf(announce, "serving %s and %s at %s\n", c.devices.tracker.c_str(), c.devices.analog.c_str(),
@@ -106,12 +108,12 @@ int serve(const ServeCommand& c) {
                                       {"reports", served.reports},
                                       {"poses", served.poses},
                                       {"interrupted", was_interrupted()}};
-    std::printf("%s\n", j.dump().c_str());
+    std::printf("%s\n", json_text(j).c_str());
   } else if (!c.quiet) {
     std::printf("published %llu reports and %llu poses\n", static_cast<unsigned long long>(served.reports),
                 static_cast<unsigned long long>(served.poses));
   }
-  return was_interrupted() ? static_cast<int>(ErrorKind::interrupted) : 0;
+  return was_interrupted() ? interrupted_exit_code() : 0;
 }
 
 }  // namespace
@@ -127,8 +129,9 @@ void add_wii_serve(CLI::App& wii_command, int& exit_code) {
   command->add_option("--channels", o->devices.analog, "Name of the analog device");
   command->add_option("--host", o->host, "Address to listen at (0.0.0.0: everyone may connect)");
   command->add_option("--port", o->port, "Port, TCP and UDP; 0 takes a free one and says which");
-  command->add_option("--duration", o->duration, "End after this many seconds")->check(CLI::PositiveNumber);
-  command->add_option("--seed", o->seed, "Seed of the virtual remote");
+  command->add_option("--duration", o->duration, "End after this many seconds")->check(seconds());
+  add_seed_option(
+      *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of the virtual remote (0 to 2^64 - 1)");
   command->add_flag("--wait", o->wait, "Begin when the first client has connected");
   command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s in the trace");
   command->add_flag("--resort", o->limits.resort, "Sort the samples of the trace by time first");

@@ -1,15 +1,18 @@
 #include <memory>
 
 #include "engine/base/error.hpp"
+#include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/script/wii_recording.hpp"
 
 namespace verisim::cli {
 
-wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits) {
+wii::Recording read_wii_file(const std::string& file, const TraceLimits& limits, std::vector<FileIdentity>* opened) {
   Inputs inputs = Inputs::live(".", {file});
-  return read_wii_recording(inputs, file, limits);
+  wii::Recording recording = read_wii_recording(inputs, file, limits);
+  if (opened != nullptr) opened->insert(opened->end(), inputs.opened().begin(), inputs.opened().end());
+  return recording;
 }
 
 std::vector<std::string> trackers_of(int remotes) {
@@ -47,7 +50,8 @@ std::string track(const wii::Recording& first, const wii::Recording* second, con
 
 void add_wii_track(CLI::App& wii_command, int& exit_code) {
   struct Options {
-    std::string trace, second, tracker = "geometric", out;
+    std::string trace, second, tracker = "geometric";
+    OutOptions out;
     TraceLimits limits;
   };
   auto* command =
@@ -58,7 +62,7 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
   command->add_option("--second", o->second,
                       fmt::format("Trace of the second remote, for {}; both say '# remote_pose:'", of_two));
   command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(wii::tracker_names()));
-  command->add_option("-o,--out", o->out, "CSV to write")->required();
+  add_out_options(*command, o->out, "CSV to write; only a CSV of poses is replaced")->required();
   command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s");
   command->add_flag("--resort", o->limits.resort, "Sort the samples by time first");
   command->footer("Example: verisim wii track head.csv --tracker scaat -o pose.csv");
@@ -67,15 +71,17 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
     if (o->second.empty() == needs_second)
       fail(ErrorKind::usage, "wii track: --second and --tracker {} belong together; {}", of_two,
            needs_second ? "name the second remote's trace" : "choose --tracker " + of_two);
-    const wii::Recording first = read_wii_file(o->trace, o->limits);
+    std::vector<FileIdentity> inputs;
+    const wii::Recording first = read_wii_file(o->trace, o->limits, &inputs);
     wii::Recording second;
     if (!o->second.empty()) {
-      second = read_wii_file(o->second, o->limits);
+      second = read_wii_file(o->second, o->limits, &inputs);
       if (!second.placed)
         fail(ErrorKind::input, "{}: no '# remote_pose:'; {} must know where the second remote is", o->second,
              o->tracker);
     }
-    write_file(o->out, track(first, o->second.empty() ? nullptr : &second, o->tracker));
+    (void)check_output({o->out.path, OutputKind::text, o->out.force, kPoseHeader}, inputs);  // before the work
+    write_text(o->out.path, track(first, o->second.empty() ? nullptr : &second, o->tracker), o->out.force, inputs);
     exit_code = 0;
   });
 }

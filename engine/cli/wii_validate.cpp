@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/cli/json_text.hpp"
+#include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/simulation/inputs.hpp"
 #include "engine/wii/validate.hpp"
 #include "engine/wii/validation_plot.hpp"
@@ -19,7 +21,7 @@ using nlohmann::ordered_json;
 struct ValidateOptions {
   wii::ValidationOptions validation;
   std::vector<std::string> motions;
-  std::string out;
+  OutOptions out;
   bool json = false;
   bool markdown = false;
 };
@@ -72,8 +74,10 @@ std::string help_of(const std::vector<Named>& all) {
 }
 
 /// A motion of any trace that has poses (columns px ... qw): a head's, in levelled coordinates of the remote.
-wii::Trajectory read_motion(const std::string& file) {
-  const Trace trace = parse_trace(file, Inputs::live(".", {file}).read(file), "", {.allow_gaps = true});
+wii::Trajectory read_motion(const std::string& file, std::vector<FileIdentity>& opened) {
+  Inputs inputs = Inputs::live(".", {file});
+  const Trace trace = parse_trace(file, inputs.read(file), "", {.allow_gaps = true});
+  opened.insert(opened.end(), inputs.opened().begin(), inputs.opened().end());
   std::vector<int> columns;
   for (const char* name : {"px", "py", "pz", "qx", "qy", "qz", "qw"}) columns.push_back(trace.column(name));
   if (std::find(columns.begin(), columns.end(), -1) != columns.end())
@@ -88,12 +92,27 @@ wii::Trajectory read_motion(const std::string& file) {
   return wii::recorded_trajectory(fs::path(file).stem().string(), std::move(t), std::move(X_LH));
 }
 
+std::string stem_of(const ValidateOptions& o) {
+  return fs::path(o.out.path).replace_extension().string();
+}
+
+/// Before anything is computed. The plots over time are looked at when they are written.
+void check_files(const ValidateOptions& o, const std::vector<FileIdentity>& inputs) {
+  if (fs::path(o.out.path).extension() == ".svg")
+    fail(ErrorKind::usage, "-o {}: names the table, beside which the plot has this name; let it end in .csv",
+         o.out.path);
+  (void)check_output({o.out.path, OutputKind::text, o.out.force, beginning_of(wii::csv_of({}))}, inputs);
+  const std::string plot = beginning_of(wii::overview_plot({}));
+  (void)check_output({stem_of(o) + ".svg", OutputKind::text, o.out.force, plot}, inputs);
+}
+
 /// FILE.csv with every figure, FILE.svg with all of them at a glance, and FILE-TRAJECTORY-SENSOR.svg over time for each
 /// trajectory that was asked for by name.
-void write_files(const ValidateOptions& o, const std::vector<wii::ValidationRow>& rows) {
-  write_file(o.out, wii::csv_of(rows));
-  const std::string stem = fs::path(o.out).replace_extension().string();
-  write_file(stem + ".svg", wii::overview_plot(rows));
+void write_files(const ValidateOptions& o, const std::vector<wii::ValidationRow>& rows,
+                 const std::vector<FileIdentity>& inputs) {
+  write_text(o.out.path, wii::csv_of(rows), o.out.force, inputs);
+  const std::string stem = stem_of(o);
+  write_text(stem + ".svg", wii::overview_plot(rows), o.out.force, inputs);
   std::vector<wii::Trajectory> paths = o.validation.recorded;
   for (const std::string& name : o.validation.trajectories) paths.push_back(wii::trajectory(name));
   for (const wii::Trajectory& path : paths) {
@@ -109,21 +128,23 @@ void write_files(const ValidateOptions& o, const std::vector<wii::ValidationRow>
         quick.measure_time = false;
         (void)wii::validate_one(same.tracker, path, wii::sensor_case(r.sensor), quick, &histories.back().samples);
       }
-      write_file(fmt::format("{}-{}-{}.svg", stem, path.name, r.sensor),
-                 wii::history_plot(path.name + ", " + r.sensor, histories));
+      write_text(fmt::format("{}-{}-{}.svg", stem, path.name, r.sensor),
+                 wii::history_plot(path.name + ", " + r.sensor, histories), o.out.force, inputs);
     }
   }
 }
 
 void run_validate(ValidateOptions& o) {
-  for (const std::string& file : o.motions) o.validation.recorded.push_back(read_motion(file));
+  std::vector<FileIdentity> inputs;
+  for (const std::string& file : o.motions) o.validation.recorded.push_back(read_motion(file, inputs));
+  if (!o.out.path.empty()) check_files(o, inputs);
   const std::vector<wii::ValidationRow> rows = wii::validate(o.validation);
-  if (!o.out.empty()) write_files(o, rows);
+  if (!o.out.path.empty()) write_files(o, rows, inputs);
   if (o.json) {
     ordered_json j;
     j["rows"] = ordered_json::array();
     for (const wii::ValidationRow& r : rows) j["rows"].push_back(json_of(r));
-    std::printf("%s\n", j.dump().c_str());
+    std::printf("%s\n", json_text(j).c_str());
   } else {
     std::printf("%s", (o.markdown ? wii::markdown_of(rows) : wii::table_of(rows)).c_str());
   }
@@ -148,10 +169,11 @@ void add_wii_validate(CLI::App& wii_command, int& exit_code) {
   command->add_option("--sensor", v.sensors, "Only these (repeatable; else ideal and wiimote)")
       ->take_all()
       ->check(CLI::IsMember(names_of(wii::sensor_cases())));
-  command->add_option("--seed", v.seed, "Seed of the sensor's random streams");
-  command->add_option("-o,--out", o->out,
-                      "Every figure to this CSV, a plot of all beside it (.svg), and one over time for each trajectory "
-                      "or motion that is named");
+  add_seed_option(
+      *command, [&v](std::uint64_t seed) { v.seed = seed; }, "Seed of the sensor's random streams (0 to 2^64 - 1)");
+  add_out_options(*command, o->out,
+                  "Every figure to this CSV, a plot of all beside it (.svg), and one over time for each trajectory or "
+                  "motion that is named; only such tables and plots are replaced");
   command->add_flag("--json", o->json, "One JSON object on stdout");
   command->add_flag("--markdown", o->markdown, "Position rms and availability alone, as a Markdown table");
   command->footer("Trajectories:" + help_of(wii::trajectories()) + "\nSensors:" + help_of(wii::sensor_cases()) +

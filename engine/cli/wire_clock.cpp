@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "engine/base/error.hpp"
+
 namespace verisim::cli {
 namespace {
 
@@ -12,6 +14,7 @@ std::int64_t total(const vrpn::Timestamp& t) {
 }
 
 vrpn::Timestamp timestamp(std::int64_t microseconds) {
+  VERISIM_ASSERT(microseconds >= 0);
   return {static_cast<std::uint32_t>(microseconds / kMicro), static_cast<std::uint32_t>(microseconds % kMicro)};
 }
 

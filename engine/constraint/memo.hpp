@@ -70,8 +70,9 @@ class ConstraintMemo {
     return constraints_[number];
   }
   /// Numbers of the axial constraints that gate this one if it is planar (reduction.hpp): one for each pair of axes.
-  /// None under `exactly_one`.
+  /// None under `exactly_one`. @pre number < constraints_known()
   [[nodiscard]] std::span<const std::uint16_t> gates_of(std::uint32_t number) const {
+    VERISIM_ASSERT(number < constraints_known_);
     return {gates_.data() + gates_of_[number].first, gates_of_[number].count};
   }
   [[nodiscard]] const MemoCounts& counts() const { return counts_; }

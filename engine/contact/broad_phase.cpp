@@ -11,20 +11,27 @@
 namespace verisim {
 
 struct BroadPhase::Implementation {
-  fcl::DynamicAABBTreeCollisionManagerd manager;
-  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
-  std::vector<Vector3d> centers;
-  std::vector<bool> can_move;
+  struct Box {
+    std::shared_ptr<fcl::Boxd> shape;
+    std::unique_ptr<fcl::CollisionObjectd> object;
+    Vector3d center, half;
+    bool can_move;
+  };
+  fcl::DynamicAABBTreeCollisionManagerd moving, fixed;
+  bool fixed_ready = false;
+  std::vector<Box> boxes;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::size_t left_out = 0;
 
   static bool collect(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
     auto* self = static_cast<Implementation*>(data);
     const auto index = [](const fcl::CollisionObjectd* o) {
       return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(o->getUserData()));
     };
-    const std::uint32_t i = std::min(index(a), index(b));
-    const std::uint32_t j = std::max(index(a), index(b));
-    if (self->can_move[i] || self->can_move[j]) self->pairs.emplace_back(i, j);
+    if (self->pairs.size() < self->pairs.capacity())
+      self->pairs.emplace_back(std::min(index(a), index(b)), std::max(index(a), index(b)));
+    else
+      ++self->left_out;
     return false;  // go on: all pairs are wanted
   }
 };
@@ -32,40 +39,58 @@ struct BroadPhase::Implementation {
 BroadPhase::BroadPhase(const std::vector<BroadPhaseBody>& bodies)
     : implementation_(std::make_unique<Implementation>()) {
   Implementation& self = *implementation_;
-  const std::size_t n = bodies.size();
-  self.pairs.reserve(n * (n - (n > 0 ? 1 : 0)) / 2);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
     VERISIM_ASSERT(is_finite(bodies[i].center_B));
     VERISIM_ASSERT(is_finite(bodies[i].half_B));
     VERISIM_ASSERT(bodies[i].half_B.minCoeff() >= 0);
-    const Vector3d side = 2 * bodies[i].half_B;
-    auto object = std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(side.x(), side.y(), side.z()));
-    object->setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
-    self.centers.push_back(bodies[i].center_B);
-    self.can_move.push_back(bodies[i].can_move);
-    self.manager.registerObject(object.get());
-    self.objects.push_back(std::move(object));
+    Implementation::Box box{std::make_shared<fcl::Boxd>(2 * bodies[i].half_B), nullptr, bodies[i].center_B,
+                            bodies[i].half_B, bodies[i].can_move};
+    box.object = std::make_unique<fcl::CollisionObjectd>(box.shape);
+    box.object->setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
+    (box.can_move ? self.moving : self.fixed).registerObject(box.object.get());
+    self.boxes.push_back(std::move(box));
   }
-  self.manager.setup();
+  self.moving.setup();
+  make_room();
 }
 
 BroadPhase::~BroadPhase() = default;
 
-void BroadPhase::set_pose(std::size_t body, const Pose& X_WB) {
-  VERISIM_ASSERT(body < implementation_->objects.size());
+void BroadPhase::set_pose(std::size_t body, const Pose& X_WB, double ahead) {
+  VERISIM_ASSERT(body < implementation_->boxes.size());
   VERISIM_ASSERT(is_placement(X_WB));  // the tree's search would not end
-  fcl::CollisionObjectd& object = *implementation_->objects[body];
-  object.setTransform(X_WB.rotation.toRotationMatrix(), X_WB * implementation_->centers[body]);
-  object.computeAABB();
+  VERISIM_ASSERT(is_not_negative(ahead));
+  Implementation::Box& box = implementation_->boxes[body];
+  VERISIM_ASSERT(box.can_move || !implementation_->fixed_ready);
+  box.shape->side = 2 * (box.half + Vector3d::Constant(ahead));
+  box.shape->computeLocalAABB();
+  box.object->setTransform(X_WB.rotation.toRotationMatrix(), X_WB * box.center);
+  box.object->computeAABB();
 }
 
 const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find() {
   Implementation& self = *implementation_;
   self.pairs.clear();
-  self.manager.update();
-  self.manager.collide(&self, &Implementation::collect);
+  self.left_out = 0;
+  if (!self.fixed_ready && !self.fixed.empty()) self.fixed.update();
+  self.fixed_ready = true;
+  if (!self.moving.empty()) {
+    self.moving.update();
+    self.moving.collide(&self, &Implementation::collect);
+    if (!self.fixed.empty()) self.moving.collide(&self.fixed, &self, &Implementation::collect);
+  }
   std::sort(self.pairs.begin(), self.pairs.end());
   return self.pairs;
+}
+
+std::size_t BroadPhase::left_out() const {
+  return implementation_->left_out;
+}
+
+std::size_t BroadPhase::make_room() {
+  Implementation& self = *implementation_;
+  self.pairs.reserve(std::max(8 * self.boxes.size() + 8, 2 * (self.pairs.size() + self.left_out)));
+  return self.pairs.capacity();
 }
 
 }  // namespace verisim

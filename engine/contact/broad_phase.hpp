@@ -1,7 +1,7 @@
 // Broad phase: the pairs of bodies that are near enough to be queried. FCL's dynamic AABB tree over one box per body.
 //
 // World coordinates. Pairs are (i, j), i < j, in ascending order, so that later sums have an order. Pairs of two bodies
-// that cannot move are left out. find() allocates nothing.
+// that cannot move are left out. find() allocates nothing: pairs for which there is no room are left out and counted.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,17 @@ class BroadPhase {
   explicit BroadPhase(const std::vector<BroadPhaseBody>& bodies);
   ~BroadPhase();
 
-  /// @pre body is one of those given to the constructor; X_WB is finite, its rotation unit
-  void set_pose(std::size_t body, const Pose& X_WB);
+  /// `ahead`: m, by which the box is larger on every side. A body that cannot move may be placed until the first
+  /// find().
+  /// @pre body is one of those given to the constructor; X_WB is finite, its rotation unit; ahead is finite, not
+  /// negative
+  void set_pose(std::size_t body, const Pose& X_WB, double ahead);
   /// The pairs of this frame; valid until the next call.
   [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find();
+  /// Pairs for which the last find() had no room.
+  [[nodiscard]] std::size_t left_out() const;
+  /// Makes room for twice as many as the last find() met. Returns for how many. Allocates.
+  std::size_t make_room();
 
  private:
   struct Implementation;

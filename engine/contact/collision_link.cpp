@@ -39,6 +39,16 @@ Vector6d twist_at(const LinkBody& body, const Vector3d& p_W) {
   return u;
 }
 
+/// Does each cluster begin where the one before ends, from the first point to the last?
+bool are_covered(const Pointshell& shell) {
+  std::uint32_t end = 0;
+  for (const Pointshell::Cluster& cluster : shell.clusters) {
+    if (cluster.begin != end || cluster.end < cluster.begin) return false;
+    end = cluster.end;
+  }
+  return end == shell.size();
+}
+
 }  // namespace
 
 CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
@@ -47,6 +57,7 @@ CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
   VERISIM_ASSERT(is_positive(second.voxmap.voxel_size));
   map_ = first_is_map_ ? &first.voxmap : &second.voxmap;
   shell_ = first_is_map_ ? &second.shell : &first.shell;
+  VERISIM_ASSERT(are_covered(*shell_));
   contacts_ = ContactList(shell_->size());
 }
 

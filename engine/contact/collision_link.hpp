@@ -45,7 +45,8 @@ struct LinkSides {
 
 class CollisionLink {
  public:
-  /// Both must outlive the link. @pre both are voxelized
+  /// Both must outlive the link. @pre both are voxelized, and the clusters of their points cover
+  /// these in order
   CollisionLink(const VoxelBody& first, const VoxelBody& second);
   /// Switches detection to triangles against triangles, with at most kMeshContactsMax contacts.
   void find_by_triangles(const MeshTree& first, const MeshTree& second);

@@ -72,8 +72,8 @@ struct QueryCost {
 
 /// Fills `contacts` (in ascending point order) and adds to `cost`. X_AB places B in A. No allocation, no lock.
 /// A pose that is not finite touches nothing. Cost: about 10 ns per cluster and 1 ns per point of those not culled.
-/// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order; a has a block and a clearance for
-/// every brick; the rotation is unit, if finite
+/// @pre  contacts.capacity() >= b.size(); b's clusters cover all its points in order (asserted of their end here, of
+/// each by CollisionLink); a has a block and a clearance for every brick; the rotation is unit, if finite
 void query(const Voxmap& a, const Pointshell& b, const Pose& X_AB, ContactList& contacts, QueryCost& cost);
 
 /// Names of the SIMD targets compiled in and supported by this CPU, best first ("AVX3", "AVX2", "SSE4", "SSSE3" …);

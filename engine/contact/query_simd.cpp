@@ -437,6 +437,10 @@ HWY_EXPORT(append_contacts_simd);
 
 std::uint64_t append_contacts(const QueryConstants& constants, const Pointshell& shell,
                               std::span<const PlacedCluster> clusters, ContactList& contacts) {
+  if (clusters.empty()) return 0;
+  VERISIM_ASSERT(contacts.size <= clusters.front().begin);  // every point before it gave one contact or none
+  VERISIM_ASSERT(clusters.back().end <= shell.size());
+  VERISIM_ASSERT(shell.size() <= contacts.capacity());
   return HWY_DYNAMIC_DISPATCH(append_contacts_simd)(constants, shell, clusters, contacts);
 }
 

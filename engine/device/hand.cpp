@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -73,7 +74,9 @@ class HandDevice final : public Device {
 
   void sample(std::uint64_t frame, double t, double dt) override {
     VERISIM_ASSERT(std::isfinite(t));
+    VERISIM_ASSERT(t >= last_t_);
     VERISIM_ASSERT(is_positive(dt));
+    last_t_ = t;
     if (frame > 0) {
       walk(dt);
       pull(aimed(t), dt);
@@ -129,9 +132,9 @@ class HandDevice final : public Device {
 
   /// Back to the waypoint before, with the place misjudged anew.
   void retry() {
-    const double share_left = 1 - share_walked();  // the way back may have another speed
+    const double fraction_left = 1 - fraction_walked();  // the way back may have another speed
     std::swap(from_, goal_);
-    along_ = share_left * leg_duration(hand_.path[from_].pose, hand_.path[goal_]);
+    along_ = fraction_left * leg_duration(hand_.path[from_].pose, hand_.path[goal_]);
     if (!withdrawing_) {
       error_ = hand_.error.cwiseProduct(draw_signed());
       angular_error_ = hand_.angular_error.cwiseProduct(draw_signed());
@@ -148,7 +151,7 @@ class HandDevice final : public Device {
   }
 
   /// How much of the leg is behind the target, in [0, 1].
-  [[nodiscard]] double share_walked() const {
+  [[nodiscard]] double fraction_walked() const {
     const double duration = leg_duration(hand_.path[from_].pose, hand_.path[goal_]);
     return duration > 0 ? std::min(1.0, along_ / duration) : 1.0;
   }
@@ -156,7 +159,7 @@ class HandDevice final : public Device {
   [[nodiscard]] Pose target() const {
     const Pose& a = hand_.path[from_].pose;
     if (from_ == goal_) return a;
-    const double s = share_walked();
+    const double s = fraction_walked();
     const Pose& b = hand_.path[goal_].pose;
     return {a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s)};
   }
@@ -194,6 +197,7 @@ class HandDevice final : public Device {
   Tremor tremor_, angular_tremor_;
   RandomStream retries_;
   std::uint64_t tries_ = 0;
+  double last_t_ = -std::numeric_limits<double>::infinity();
   Vector3d error_, angular_error_;
   std::size_t from_ = 0, goal_ = 0;  ///< the leg that is walked
   double along_ = 0, dwelling_ = 0, waited_ = 0;

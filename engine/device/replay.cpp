@@ -23,8 +23,10 @@ class ReplayDevice final : public Device {
 
   [[nodiscard]] const std::string& name() const override { return name_; }
 
-  void sample(std::uint64_t, double t, double) override {
+  void sample(std::uint64_t, double t, double dt) override {
+    VERISIM_ASSERT(std::isfinite(t));
     VERISIM_ASSERT(t >= last_t_);
+    VERISIM_ASSERT(is_positive(dt));
     last_t_ = t;
     const auto& times = samples_.t;
     while (next_ < times.size() && times[next_] <= t + kSimultaneous) ++next_;

@@ -73,6 +73,7 @@ StepWork work_of_step(const RigidBody& body, const Loads& loads, const Motion& m
                       const Wrench& damper, const Wrench& contact, double energy_before, double dt, double shadow_dt) {
   StepWork work;
   const Vector6d half_way = dt * motion.middle;
+  work.moved = half_way;
   work.contact = contact;
   work.contact_work = stacked(contact).dot(half_way);
   const double stored = potential_at_end(body, loads, shadow_dt) - energy_before;

@@ -72,6 +72,8 @@ struct StepWork {
   double input = 0;         ///< by the hand through these two; for the spring see Ledger::add_jump
   double numerical = 0;     ///< lost (or gained, < 0) by the discretization itself: see ledger.hpp
   ContactEnd contact_end;
+  /// m, rad: displacement along which the work of a wrench on the body is exactly the kinetic energy it gave.
+  Vector6d moved = Vector6d::Zero();
 };
 
 /// @param contact_scale  0 to 1, of the passivity controller (passive_scale)

@@ -16,8 +16,8 @@ struct Place {
   double c, s;
 };
 
-/// The place `t` beyond the segment's middle (c, s). Cosine and sine of t by their series, to 1e-12. @pre |t| <= pi /
-/// 16
+/// The place `t` beyond the segment's middle (c, s). Cosine and sine of t by their series, to 1e-12. On an arc |t| is
+/// at most pi / 16: asserted of a feature's segments when it is made (feature_maker.cpp), not here, in Newton's steps.
 inline Place place_at(bool is_arc, double c, double s, double t) {
   if (!is_arc) return {t, c + t, s};
   const double q = t * t;
@@ -32,8 +32,9 @@ inline Place place_at(bool is_arc, double c, double s, double t) {
 /// @param half          of the segment's width, in t
 /// @param radius_slope  derivative by t of the radius of the ball that the curve carries
 inline Place closest_place(const CurveFromSurface& curve, double c, double s, double half, double radius_slope = 0) {
-  constexpr int kStepsMax = 5;
-  constexpr double kGain = 1e-10;  // m: what another step would have to win
+  constexpr int kStepsMax = 5;  // a bound of the work: two are needed, and a place short of the best is a place too
+  constexpr double kGain =
+      1e-10;  // m, the accuracy that SearchThresholds count on: what another step would have to win
   Place at{0, c, s};
   if (half == 0) return at;
   with_measure(curve, [&](auto&& measure_at) {

@@ -1,12 +1,13 @@
 #include "engine/exact/edge_ownership.hpp"
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim::exact {
 namespace {
 
-constexpr double kSameDistance = 1e-12;  // m, of two faces: a tenth of what double precision says of a body of metres
-/// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
-/// useful normal.
-constexpr double kBlade = 0.1;
+constexpr double kSameDistance =
+    1e-12;  // m, no heuristic but rounding, of two faces: a tenth of what double precision says of a body of metres
 
 /// True if a point lies beyond a smooth edge, seen from the face.
 bool is_beyond(const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
@@ -74,7 +75,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
   double d_b = a.at(p_b).distance - b.at(p_b).distance;
   if (!(d_a < 0 && d_b > 0)) return false;
   SurfaceAt other_at{};
-  constexpr int kStepsMax = 30;
+  constexpr int kStepsMax = 30;          // a bound of the work: about six are needed
   for (int i = 0; i < kStepsMax; ++i) {  // false position, with the Illinois rule
     const double t = t_a + (t_b - t_a) * (d_a / (d_a - d_b));
     c.place = place_at(placed.is_arc(), pair.mover.sample_c[c.sample], pair.mover.sample_s[c.sample], t);
@@ -101,7 +102,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
   const double weight_a = slope_b / (slope_b - slope_a);
   const Vector3d mixed = weight_a * c.at.normal + (1 - weight_a) * other_at.normal;
   const double length = mixed.norm();
-  if (length < kBlade) return false;
+  if (length < pair.motion.thresholds.blade) return false;
   c.normal = mixed / length;
   c.gap = c.at.distance / length;
   c.edge_fraction = 4 * weight_a * (1 - weight_a);
@@ -134,6 +135,8 @@ bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, 
 }
 
 bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, Candidate& c) {
+  VERISIM_ASSERT(face < pair.base.faces.size());
+  VERISIM_ASSERT(is_unit(c.at.normal));
   const Feature& feature = *placed.feature;
   const Vector3d foot = c.p - c.at.distance * c.at.normal;
   if (feature.own_face != kNoFace) {

@@ -19,7 +19,7 @@ enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_m
 /// @param coincident  m: SearchThresholds::coincident
 [[nodiscard]] OwnershipRule ownership_rule(double a, double b, double coincident);
 
-/// The other face of an edge of `face`.
+/// The other face of an edge of `face`. @pre the edge is one of its (not asserted: it is asked in the search's loops)
 [[nodiscard]] std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face);
 
 /// True if `mine` owns the point p against `other`, its neighbour across a convex edge of the base.
@@ -31,7 +31,7 @@ enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_m
 /// True if the candidate becomes a row against `face` of the base: its foot lies within the face's trim, and no sharp
 /// edge gives the point to another face. Where the sample's segment crosses a convex edge of the face, the candidate
 /// is changed into the contact of edge against edge. Sets the candidate's weight.
-/// @pre place, point, gap and normal of `c` are those against `face`
+/// @pre place, point, gap and normal of `c` are those against `face`, which is one of the base's
 [[nodiscard]] bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face,
                                     Candidate& c);
 

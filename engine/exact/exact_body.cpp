@@ -11,9 +11,6 @@
 namespace verisim::exact {
 namespace {
 
-/// How far a round face may bulge out of the box of its triangles, relative to its radius: chords of 0.5 rad.
-constexpr double kSagitta = 0.03;
-
 /// The triangles of one part, by face.
 class FaceTriangles {
  public:
@@ -75,7 +72,7 @@ void set_extent(ExactEdge& made, const Edge& edge) {
                           made.half = width;
                         },
                         [&](const Circle& c) {
-                          if (!(width < 0.999 * pinned::kPi)) return;
+                          if (!(width < 0.999 * pinned::kPi)) return;  // a full circle, whatever its rounding
                           made.extent = ExactEdge::Extent::arc;
                           made.center = c.center;
                           const Vector3d y = c.normal.cross(c.x_axis);
@@ -111,7 +108,7 @@ class PartImporter {
     if (triangles_.of(f).empty()) return;
     face.surface = AnalyticSurface::from(part_.faces[f]);
     if (!face.surface || face.surface->kind() == SurfaceKind::plane) return;
-    const Vector3d more = Vector3d::Constant(kSagitta * face.bounds.size().maxCoeff());
+    const Vector3d more = Vector3d::Constant(body_.options.sagitta * face.bounds.size().maxCoeff());
     face.bounds.min -= more;
     face.bounds.max += more;
   }
@@ -125,6 +122,7 @@ class PartImporter {
     const Edge& edge = part_.edges[e];
     if (edge.faces.size() != 2 || edge.faces[0] == edge.faces[1]) return;  // a seam inside one surface
     ExactEdge made;
+    made.beyond_end = body_.options.beyond_end;
     made.faces = {face_base_ + edge.faces[0], face_base_ + edge.faces[1]};
     const AnalyticSurface* surface[2] = {surface_of(made.faces[0]), surface_of(made.faces[1])};
     points_[e] = points_along(edge, body_.options.spacing, surface[0], surface[1]);
@@ -175,7 +173,8 @@ class PartImporter {
     const auto number = face_base_ + static_cast<std::uint32_t>(f);
     ExactFace& face = body_.faces[number];
     if (!face.surface) return;
-    face.trim.emplace(*face.surface, part_.mesh, triangles_.of(f), borders_[f], body_.options.spacing);
+    const Trim::Cells cells{body_.options.spacing, body_.options.cells_max, body_.options.near_pole};
+    face.trim.emplace(*face.surface, part_.mesh, triangles_.of(f), borders_[f], cells);
     ++body_.precise_face_count;
     add_face_features(body_, part_.faces[f], number);
   }
@@ -192,7 +191,6 @@ class PartImporter {
 }  // namespace
 
 bool ExactEdge::limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const {
-  constexpr double kBeyondEnd = 5e-5;  // m: deeper than contacts go
   if (extent == Extent::all) return true;
   const Vector3d d = p - center;
   const double a = direction.dot(d);
@@ -200,7 +198,7 @@ bool ExactEdge::limits_face_at(std::uint32_t face, const Vector3d& p, double dis
   const bool is_line = extent == Extent::line;
   const double beyond = is_line ? std::abs(a) - half : half * std::sqrt(a * a + b * b) - a;
   const std::size_t end = (is_line ? a : b) > 0 ? 1 : 0;
-  return beyond <= (distance < 0 ? kBeyondEnd : 0) || limits_beyond_end[faces[0] == face ? 0 : 1][end];
+  return beyond <= (distance < 0 ? beyond_end : 0) || limits_beyond_end[faces[0] == face ? 0 : 1][end];
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {
@@ -209,6 +207,10 @@ ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : o
   VERISIM_ASSERT(is_not_negative(options.point_length));
   VERISIM_ASSERT(is_not_negative(options.smooth));
   VERISIM_ASSERT(is_not_negative(options.group_angle));
+  VERISIM_ASSERT(options.cells_max > 0);
+  VERISIM_ASSERT(is_not_negative(options.sagitta));
+  VERISIM_ASSERT(is_not_negative(options.beyond_end));
+  VERISIM_ASSERT(is_not_negative(options.same_corner));
   for (const Part& part : parts) {
     VERISIM_ASSERT(is_whole(part.mesh));
     for (const Edge& edge : part.edges) {

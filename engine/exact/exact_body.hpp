@@ -39,6 +39,14 @@ struct BodyOptions {
   // Heuristic: exact_thresholds_test says how little results depend on these.
   double smooth = 0.0087;    ///< sine of the angle between its two faces, 0.5 degrees: below it an edge is smooth
   double group_angle = 0.5;  ///< rad, largest arc of a group: farther segments push in different directions
+  int cells_max = 48;  ///< of a trim along each side of its chart: 2,304 cells are 20 kB, and borders a fiftieth wide
+  double near_pole = 0.9;  ///< sine of a latitude: beyond it a ball's turns are so short that all are near each other
+  double sagitta =
+      0.03;  ///< of its box: how far a round face may bulge out of that of its triangles; chords of 0.5 rad
+  /// m. How far beyond an edge's end at a corner with a concave edge a place counts as within: deeper than contacts go.
+  double beyond_end = 5e-5;
+  double convex_corner = 0.25;  ///< sine: a curve's first chord leaves its tangent by up to pi / 16, 0.2
+  double same_corner = 1e-7;    ///< m: ends nearer than this are one corner; CAD kernels' own tolerance
 };
 
 /// Convex: the angle inside the material is below 180 degrees. Smooth: the faces are tangent (to 0.5 degrees).
@@ -57,6 +65,7 @@ struct ExactEdge {
   Extent extent = Extent::all;
   Vector3d center = Vector3d::Zero(), direction = Vector3d::Zero(), perpendicular = Vector3d::Zero();
   double half = 0;
+  double beyond_end = 0;  ///< m, BodyOptions::beyond_end
   /// [face][0: at its beginning, 1: at its end] Does the edge limit the face beyond that end too? True in two cases:
   /// all edges at that corner are convex, so the material is inside of all of their faces; or the face's own corner
   /// there is convex (below 180 degrees), so whoever is across the edge is off the face.
@@ -64,7 +73,7 @@ struct ExactEdge {
 
   /// True if the edge limits `face` near the point p: p lies within the extent, or limits_beyond_end holds. At a corner
   /// with a concave edge the material is inside of either of two faces; a point that is inside of the face across
-  /// (distance < 0) counts as within up to 0.05 mm beyond the end.
+  /// (distance < 0) counts as within up to `beyond_end` beyond the end.
   /// @param distance  of p from the face across the edge [m]
   [[nodiscard]] bool limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const;
 

@@ -58,6 +58,12 @@ struct SearchThresholds {
   double cone_full = 0.42, cone_none = 0.64;
   double touching = 1e-6;      ///< m: a part of a segment as near as this touches
   double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone
+  double end_apart = 0.25;  ///< of a group's length: an end that is nearer to the closest place needs no row of its own
+  double lead_enough =
+      1;  ///< times its change to the next sample: by so much another face has to own a sample to cull it
+  /// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
+  /// useful normal.
+  double blade = 0.1;
 };
 
 /// Work of one search. The same for the same input.

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/error.hpp"
 #include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim::exact {
 namespace {
 
-constexpr double kSegmentMax = pinned::kPi / 8;  // rad: place_at's series hold for half of it
+constexpr double kSegmentMax = pinned::kPi / 8;  // rad, no heuristic: place_at's series hold for half of it
 
 /// A sample before it is stored.
 struct Sample {
@@ -41,6 +42,7 @@ struct Segmentation {
 
 void split_evenly(Segmentation& split, double from, double to, double longest) {
   if (!(to > from) || !std::isfinite(to - from)) return;
+  // 1e-9: a length that is a whole number of segments stays one, whatever its rounding.
   split.segments = std::max(1, static_cast<int>(std::ceil((to - from) / longest - 1e-9)));
   split.from = from;
   split.width = (to - from) / split.segments;
@@ -55,6 +57,7 @@ Segmentation segmentation_of(const Curve& curve, const std::array<double, 2>& t_
     split.y = along_y * c.normal.cross(c.x_axis);
     const double wider = std::max(along_x, along_y);
     if (wider > 0) split_evenly(split, t_range[0], t_range[1], std::min(spacing / wider, kSegmentMax));
+    VERISIM_ASSERT(split.width <= kSegmentMax * (1 + 1e-9));
   };
   std::visit(Overloaded{[&](const Line& c) {
                           split.origin = c.point;
@@ -240,9 +243,9 @@ namespace {
 
 /// True if the corner of a face in which two of its edges end is convex: its angle within the face is below 180
 /// degrees.
-bool is_convex_corner(const EdgeEnd& a, std::size_t side_a, const EdgeEnd& b, std::size_t side_b) {
-  constexpr double kConvexCorner = 0.25;  // sine; a curve's first chord leaves its tangent by up to pi / 16
-  return b.into.dot(a.outward[side_a]) < -kConvexCorner && a.into.dot(b.outward[side_b]) < -kConvexCorner;
+/// @param least  BodyOptions::convex_corner
+bool is_convex_corner(const EdgeEnd& a, std::size_t side_a, const EdgeEnd& b, std::size_t side_b, double least) {
+  return b.into.dot(a.outward[side_a]) < -least && a.into.dot(b.outward[side_b]) < -least;
 }
 
 /// Edges of a face that end in a convex corner of it limit that face beyond the corner too.
@@ -254,7 +257,7 @@ void limit_beyond_convex_corners(ExactBody& body, std::span<const EdgeEnd* const
       const ExactEdge& next = body.edges[b->edge];
       for (std::size_t i = 0; i < 2; ++i)
         for (std::size_t j = 0; j < 2; ++j)
-          if (edge.faces[i] == next.faces[j] && is_convex_corner(*a, i, *b, j))
+          if (edge.faces[i] == next.faces[j] && is_convex_corner(*a, i, *b, j, body.options.convex_corner))
             edge.limits_beyond_end[i][a->which] = true;
     }
   }
@@ -263,7 +266,7 @@ void limit_beyond_convex_corners(ExactBody& body, std::span<const EdgeEnd* const
 }  // namespace
 
 void add_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
-  constexpr double kSame = 1e-7;  // m: ends nearer than this are one corner
+  const double same = body.options.same_corner;
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EdgeEnd& a, const EdgeEnd& b) { return a.point.x() < b.point.x(); });
   std::vector<bool> used(ends.size(), false);
@@ -271,8 +274,8 @@ void add_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (used[i]) continue;
     here.clear();
-    for (std::size_t j = i; j < ends.size() && ends[j].point.x() <= ends[i].point.x() + kSame; ++j) {
-      if (used[j] || (ends[j].point - ends[i].point).norm() > kSame) continue;
+    for (std::size_t j = i; j < ends.size() && ends[j].point.x() <= ends[i].point.x() + same; ++j) {
+      if (used[j] || (ends[j].point - ends[i].point).norm() > same) continue;
       used[j] = true;
       here.push_back(&ends[j]);
     }

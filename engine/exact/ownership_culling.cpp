@@ -70,6 +70,7 @@ DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const A
 void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block,
                           std::uint32_t face, const BlockDistances& distances, std::span<double> gaps_ahead) {
   const std::uint32_t count = block.end - block.begin;
+  VERISIM_ASSERT(gaps_ahead.size() >= count);
   const auto place = [&](std::uint32_t i) {
     return placed.point({0, pair.mover.sample_c[block.begin + i], pair.mover.sample_s[block.begin + i]});
   };
@@ -83,9 +84,10 @@ void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, con
       lead_of(pair, *faces[face_across(*edge, face)].surface, *faces[face].surface, placed, block, distances);
   // From a segment's middle to its end the lead changes by about half of its change to the next middle. The lead must
   // exceed twice that.
+  const double enough = pair.motion.thresholds.lead_enough;
   const auto keeps_lead_towards = [&](std::uint32_t i, std::uint32_t next) {
-    return lead.rule[next] == lead.rule[i] && lead.now[i] > std::abs(lead.now[i] - lead.now[next]) &&
-           lead.by_rule[i] > std::abs(lead.by_rule[i] - lead.by_rule[next]);
+    return lead.rule[next] == lead.rule[i] && lead.now[i] > enough * std::abs(lead.now[i] - lead.now[next]) &&
+           lead.by_rule[i] > enough * std::abs(lead.by_rule[i] - lead.by_rule[next]);
   };
   const auto is_led = [&](std::uint32_t i) {
     return gaps_ahead[i] == kOutOfReach ||

@@ -18,7 +18,7 @@ struct BlockDistances {
 /// Rejects samples that the face across a convex edge owns, a group at a time: accept_candidate would refuse each of
 /// them. Conservative: a group is rejected only if its whole segments are owned by the other face.
 /// @param gaps_ahead  kOutOfReach where a sample is not near the face; afterwards also where it was rejected
-/// @pre at least one of gaps_ahead is not kOutOfReach
+/// @pre gaps_ahead has an entry for each sample of the block, and at least one is not kOutOfReach
 void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block,
                           std::uint32_t face, const BlockDistances& distances, std::span<double> gaps_ahead);
 

@@ -164,7 +164,7 @@ void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, s
   };
   for (int i = side > 0 ? count - 1 : 0; side * (i - here) >= 0; i -= side) {
     const double offset = side * (2 * half * (i - here) - best.place.t) + half;  // in t, from the closest place
-    if (2 * offset < half * count) return;                                       // less than a quarter of the group
+    if (offset < pair_.motion.thresholds.end_apart * (2 * half * count)) return;
     const double ahead = gaps_ahead[static_cast<std::size_t>(i)];
     if (ahead == kOutOfReach) continue;
     if (!is_coincident(ahead, offset / half * placed.feature->half_length)) return;

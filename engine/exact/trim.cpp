@@ -10,7 +10,6 @@ namespace {
 
 using Chart = std::array<double, 2>;
 
-constexpr int kCellsMax = 48;
 constexpr double kTurn = 4;  ///< once around, in turns of AnalyticSurface::chart
 
 /// How the chart's two coordinates run for a kind of surface.
@@ -40,24 +39,117 @@ double distance_from_axis(const AnalyticSurface& s, const Vector3d& p) {
   return profile_of(p, s.point(), s.axis(), [] { return Vector3d::Zero(); }).rho;
 }
 
-/// Calls visit(point) at places of the triangle no farther apart than `step`, corners included.
+double wrapped(double turn) {
+  return turn - kTurn * std::floor(turn / kTurn);
+}
+
+/// Does a triangle lie over the place of a ball beyond its centre in a direction? To the rounding of its corners.
+bool lies_over(const std::array<Vector3d, 3>& corner, const Vector3d& center, const Vector3d& direction) {
+  constexpr double kRounding = 1e-6;  // of the triangle
+  const Vector3d a = corner[0] - center, b = corner[1] - center, c = corner[2] - center;
+  const Vector3d weights(direction.dot(b.cross(c)), direction.dot(c.cross(a)), direction.dot(a.cross(b)));
+  const double sum = weights.sum();
+  if (sum == 0 || (weights.array() / sum < -kRounding).any()) return false;
+  return direction.dot(weights.x() * a + weights.y() * b + weights.z() * c) / sum > 0;
+}
+
+/// Are the poles of a ball, against its axis and along it, within a face? They need not be corners of a triangle.
+std::array<bool, 2> poles_within(const AnalyticSurface& ball, const TriangleMesh& mesh,
+                                 std::span<const std::uint32_t> triangles) {
+  std::array<bool, 2> within = {false, false};
+  for (const std::uint32_t t : triangles) {
+    const auto& v = mesh.triangles[t];
+    const std::array<Vector3d, 3> corner = {mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
+    within[0] = within[0] || lies_over(corner, ball.point(), -ball.axis());
+    within[1] = within[1] || lies_over(corner, ball.point(), ball.axis());
+  }
+  return within;
+}
+
+/// A place of a triangle or a bound, and where it is in the chart. Between two of them a flat triangle leaves the
+/// surface, and its chart there is not the surface's: near a ball's pole, and across a torus's tube if its facets are
+/// wide. So midpoints are brought back to the ball, and taken in the chart of a torus.
+struct ChartPlace {
+  Vector3d point;
+  Chart chart;
+};
+ChartPlace place_of(const AnalyticSurface& s, const Vector3d& point) {
+  return {point, s.chart(point)};
+}
+double way_of(double from, double to, bool around) {
+  const double way = to - from;
+  return around ? way - kTurn * std::round(way / kTurn) : way;
+}
+ChartPlace between(const AnalyticSurface& s, const ChartPlace& a, const ChartPlace& b, double share) {
+  const Vector3d point = a.point + share * (b.point - a.point);
+  if (s.kind() == SurfaceKind::sphere) return place_of(s, s.foot(point));
+  if (s.kind() != SurfaceKind::torus) return place_of(s, point);
+  ChartPlace place{point, {}};
+  for (std::size_t i = 0; i < 2; ++i)
+    place.chart[i] = wrapped(a.chart[i] + share * way_of(a.chart[i], b.chart[i], true));
+  return place;
+}
+
+/// Calls visit(chart) along a bound, at places no farther apart than `step` [m].
 template <typename Visit>
-void for_each_place(std::array<Vector3d, 3> corner, double step, Visit&& visit) {
-  const auto opposite = [&](int i) { return (corner[(i + 1) % 3] - corner[(i + 2) % 3]).squaredNorm(); };
-  int apex = 0;
-  for (int i = 1; i < 3; ++i) apex = opposite(i) > opposite(apex) ? i : apex;
-  std::rotate(corner.begin(), corner.begin() + apex, corner.end());
-  const Vector3d base = corner[2] - corner[1];  // the longest side
-  const Vector3d side = corner[0] - corner[1];
-  const double length = base.norm();
-  const double height = length > 0 ? base.cross(side).norm() / length : side.norm();
-  const int rows = 1 + static_cast<int>(std::ceil(height / step));
-  for (int i = 0; i <= rows; ++i) {
-    const double h = static_cast<double>(i) / rows;
-    const int columns = 1 + static_cast<int>(std::ceil((1 - h) * length / step));
-    for (int j = 0; j <= columns; ++j) visit(corner[1] + h * side + (1 - h) * static_cast<double>(j) / columns * base);
+void walk(const AnalyticSurface& surface, std::span<const Vector3d> points, double step, Visit&& visit) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ChartPlace from = place_of(surface, points[i == 0 ? 0 : i - 1]);
+    const ChartPlace to = place_of(surface, points[i]);
+    const int pieces = 1 + static_cast<int>((to.point - from.point).norm() / step);
+    for (int j = 0; j <= pieces; ++j) visit(between(surface, from, to, static_cast<double>(j) / pieces).chart);
   }
 }
+
+/// Calls visit(chart) at places of a triangle that are no farther apart than half a cell, corners included: it halves
+/// the side that is longest in the chart until all are short there. Beside a pole or an apex, where turns are
+/// everywhere, until they are short in space.
+template <typename Visit>
+class TrianglePlaces {
+ public:
+  /// @param per_unit  cells per unit of the chart   @param shortest  m
+  TrianglePlaces(const AnalyticSurface& surface, const Layout& layout, const Chart& per_unit, double shortest,
+                 Visit visit)
+      : surface_(surface), layout_(layout), per_unit_(per_unit), shortest_(shortest), visit_(visit) {}
+
+  void run(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto& v = mesh.triangles[triangle];
+    const std::array<ChartPlace, 3> corner = {place_of(surface_, mesh.vertices[v[0]]),
+                                              place_of(surface_, mesh.vertices[v[1]]),
+                                              place_of(surface_, mesh.vertices[v[2]])};
+    for (const ChartPlace& place : corner) visit_(place.chart);
+    halve(corner);
+  }
+
+ private:
+  void halve(const std::array<ChartPlace, 3>& corner) {
+    std::size_t longest = 0;
+    double cells = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double here = cells_between(corner[i], corner[(i + 1) % 3]);
+      if (here <= cells) continue;
+      cells = here;
+      longest = i;
+    }
+    if (cells <= 0.45) return;  // two such steps are less than a cell
+    const ChartPlace &a = corner[longest], &b = corner[(longest + 1) % 3], &c = corner[(longest + 2) % 3];
+    const ChartPlace middle = between(surface_, a, b, 0.5);
+    visit_(middle.chart);
+    halve({a, middle, c});
+    halve({middle, b, c});
+  }
+
+  [[nodiscard]] double cells_between(const ChartPlace& a, const ChartPlace& b) const {
+    if ((a.point - b.point).squaredNorm() <= shortest_ * shortest_) return 0;
+    return std::max(std::abs(way_of(a.chart[0], b.chart[0], layout_.a_around)) * per_unit_[0],
+                    std::abs(way_of(a.chart[1], b.chart[1], layout_.b_around)) * per_unit_[1]);
+  }
+  const AnalyticSurface& surface_;
+  const Layout& layout_;
+  Chart per_unit_;
+  double shortest_;
+  Visit visit_;
+};
 
 }  // namespace
 
@@ -87,7 +179,8 @@ int Trim::cell_at(const std::array<double, 2>& chart) const {
 }
 
 Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-           std::span<const Border> borders, double cell) {
+           std::span<const Border> borders, const Cells& cells) {
+  const double cell = cells.size;
   // The chart's extent.
   Chart low{1e300, 1e300};
   Chart high{-1e300, -1e300};
@@ -104,13 +197,19 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
     for (const std::uint32_t v : mesh.triangles[t]) include(mesh.vertices[v]);
   for (const Border& border : borders)
     for (const Vector3d& p : border.points) include(p);
+  const bool has_poles = surface.kind() == SurfaceKind::sphere;
+  if (has_poles) {
+    const auto [south, north] = poles_within(surface, mesh, triangles);
+    if (south) low[1] = -1;
+    if (north) high[1] = 1;
+  }
 
   const Layout layout = layout_of(surface, widest);
   const auto make_axis = [&](bool around, double metres, double from, double to) {
     Axis axis;
     axis.around = around;
     const double extent = around ? kTurn : to - from;
-    const int inner = static_cast<int>(std::clamp(std::ceil(extent * metres / cell), 1.0, double{kCellsMax}));
+    const int inner = static_cast<int>(std::clamp(std::ceil(extent * metres / cell), 1.0, double(cells.count_max)));
     axis.cell = std::max(extent / inner, cell / metres * 0x1p-10);
     axis.count = around ? inner : inner + 2;  // a cell more on either side: near the border, but beyond it
     axis.from = around ? 0 : from - axis.cell;
@@ -123,33 +222,30 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
   cells_.assign(cell_count, Where::outside);
 
   // What triangles cover is inside, before borders have their say.
-  const double step = 0.45 * std::min(a_.cell * layout.a_metres, b_.cell * layout.b_metres);
-  for (const std::uint32_t t : triangles) {
-    const auto& v = mesh.triangles[t];
-    for_each_place({mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]}, step, [&](const Vector3d& p) {
-      const int at = cell_at(surface.chart(p));
-      if (at >= 0) cells_[static_cast<std::size_t>(at)] = Where::inside;
-    });
-  }
+  const double smallest = std::min(a_.cell * layout.a_metres, b_.cell * layout.b_metres);
+  TrianglePlaces places(surface, layout, {a_.per_cell, b_.per_cell}, 0x1p-14 * smallest, [&](const Chart& chart) {
+    const int at = cell_at(chart);
+    if (at >= 0) cells_[static_cast<std::size_t>(at)] = Where::inside;
+  });
+  for (const std::uint32_t t : triangles) places.run(mesh, t);
 
   // A ball's pole is one place of all the last cells, and to rounding of those beyond them, which are nowhere else.
   const auto row = [&](int b) { return cells_.begin() + std::ptrdiff_t{b} * a_.count; };
-  constexpr double kPole = 1 - 1e-9;
-  if (surface.kind() == SurfaceKind::sphere) {
-    if (low[1] < -kPole) std::copy_n(row(1), a_.count, row(0));
-    if (high[1] > kPole) std::copy_n(row(b_.count - 2), a_.count, row(b_.count - 1));
+  if (has_poles) {
+    if (low[1] <= -1) std::copy_n(row(1), a_.count, row(0));
+    if (high[1] >= 1) std::copy_n(row(b_.count - 2), a_.count, row(b_.count - 1));
   }
 
   // Cells that an edge passes, and their neighbours.
+  const double step = 0.45 * smallest;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> passes;  // cell, edge
-  const bool has_poles = surface.kind() == SurfaceKind::sphere;
-  const auto mark = [&](const Vector3d& p, std::uint32_t edge) {
-    const Chart chart = surface.chart(p);
+  const auto mark = [&](const Chart& chart, std::uint32_t edge) {
     const int at = cell_at(chart);
     if (at < 0) return;
     const int a = at % a_.count;
     const int b = at / a_.count;
-    const bool near_pole = has_poles && std::abs(chart[1]) > 0.9;  // turns are short there: all of them are near
+    const bool near_pole =
+        has_poles && std::abs(chart[1]) > cells.near_pole;  // turns are short there: all of them are near
     const int half = a_.count / 2;
     const auto [a_first, a_last] = near_pole ? std::array{-half, half} : a_.around_of(chart[0]);
     const auto [b_first, b_last] = b_.around_of(chart[1]);
@@ -162,12 +258,7 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
     }
   };
   for (const Border& border : borders) {
-    for (std::size_t i = 0; i < border.points.size(); ++i) {
-      const Vector3d& from = border.points[i == 0 ? 0 : i - 1];
-      const Vector3d& to = border.points[i];
-      const int pieces = 1 + static_cast<int>((to - from).norm() / step);
-      for (int j = 0; j <= pieces; ++j) mark(from + static_cast<double>(j) / pieces * (to - from), border.edge);
-    }
+    walk(surface, border.points, step, [&](const Chart& chart) { mark(chart, border.edge); });
     std::sort(passes.begin(), passes.end());
     passes.erase(std::unique(passes.begin(), passes.end()), passes.end());
   }

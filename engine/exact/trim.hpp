@@ -23,16 +23,22 @@ namespace verisim::exact {
 class Trim {
  public:
   enum class Where : std::uint8_t { outside, inside, border };
+  /// How fine the raster is. BodyOptions says why.
+  struct Cells {
+    double size;       ///< wanted [m]
+    int count_max;     ///< along each side of the chart
+    double near_pole;  ///< sine of a latitude beyond which a border is near on all sides of a ball's pole
+  };
 
   /// @param triangles  the face's, as indices into mesh.triangles: they say on which side of its borders it lies
   /// @param borders    numbers and points of its bounding edges (seams left out); neighbouring points as near as a cell
-  /// @param cell       wanted cell size [m]; at most 48 cells are made along each side of the chart
+  /// @param cells      how fine the raster is
   struct Border {
     std::uint32_t edge;
     std::span<const Vector3d> points;
   };
   Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-       std::span<const Border> borders, double cell);
+       std::span<const Border> borders, const Cells& cells);
 
   struct Answer {
     Where where;

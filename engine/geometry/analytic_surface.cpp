@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/base/overloaded.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/entity_check.hpp"
@@ -26,6 +28,7 @@ double Meridian::apex() const {
     case SurfaceKind::sphere:
       return 0;
     case SurfaceKind::cone:
+      VERISIM_ASSERT(tangent != 0);
       return -radius / tangent;
     case SurfaceKind::torus:
       break;
@@ -98,6 +101,8 @@ std::optional<AnalyticSurface> AnalyticSurface::from(const Face& face) {
 }
 
 AnalyticSurface AnalyticSurface::in_grid(const Vector3d& origin, double scale) const {
+  VERISIM_ASSERT(is_finite(origin));
+  VERISIM_ASSERT(is_positive(scale));
   AnalyticSurface moved = *this;
   moved.point_ = scale * (point_ - origin);
   moved.meridian_.radius *= scale;

@@ -95,7 +95,7 @@ class AnalyticSurface {
   [[nodiscard]] static std::optional<AnalyticSurface> from(const Surface& surface);
   /// The same; of a torus that meets itself the part, outside or inside, where the face is by its v range.
   [[nodiscard]] static std::optional<AnalyticSurface> from(const Face& face);
-  /// The surface in coordinates (p - origin) * scale. @pre scale > 0
+  /// The surface in coordinates (p - origin) * scale. @pre scale is finite and above 0, the origin finite
   [[nodiscard]] AnalyticSurface in_grid(const Vector3d& origin, double scale) const;
 
   /// About 40 flops and one square root, two for sphere and torus. On the axis of a round surface the normal is that of

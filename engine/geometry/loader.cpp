@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 #include "engine/geometry/cad_client.hpp"
 #include "engine/geometry/model_format.hpp"
 #include "engine/geometry/recover.hpp"
@@ -171,6 +172,7 @@ std::vector<Part> finished_meshes(const Message& answer, const std::string& path
 
 /// "Bolt", "Bolt#2", "Bolt#3": the first keeps its name.
 void make_names_unique(std::vector<Part>& parts, const std::string& nameless) {
+  for (Part& part : parts) part.name = shown(part.name, kLongestName);  // other people's files may hold anything
   std::set<std::string> taken;
   for (const Part& part : parts) taken.insert(part.name);
   std::set<std::string> used;

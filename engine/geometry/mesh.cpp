@@ -41,6 +41,7 @@ std::size_t count_duplicates(const TriangleMesh& mesh) {
 }  // namespace
 
 Bounds bounds_of(const TriangleMesh& mesh) {
+  VERISIM_ASSERT(is_whole(mesh));
   Bounds bounds;
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) bounds.include(mesh.vertices[corner]);
@@ -81,6 +82,7 @@ MassProperties mass_properties_of(const TriangleMesh& mesh) {
 }
 
 double area_of(const TriangleMesh& mesh) {
+  VERISIM_ASSERT(is_whole(mesh));
   double area = 0;
   for (const auto& triangle : mesh.triangles) {
     const auto [a, b, c] = corners_of(mesh, triangle);

@@ -41,6 +41,7 @@ struct Bounds {
   return mesh.face_of_triangle.empty() || mesh.face_of_triangle.size() == mesh.triangles.size();
 }
 
+/// Of the corners that triangles use. @pre is_whole(mesh), here and in the two below
 [[nodiscard]] Bounds bounds_of(const TriangleMesh& mesh);
 
 /// Volume [m^3], centroid [m] and inertia about the centroid per unit density [m^5]. Exact for exact geometry, that of

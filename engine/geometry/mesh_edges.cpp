@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -44,6 +46,8 @@ std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
 }
 
 Components components_of(const TriangleMesh& mesh, std::span<const Side> sides, bool across_nonmanifold) {
+  VERISIM_ASSERT(sides.size() <= 3 * mesh.triangles.size());
+  for (const Side& side : sides) VERISIM_ASSERT(side.triangle < mesh.triangles.size());
   Sets sets(mesh.triangles.size());
   for_each_edge(sides, [&](std::span<const Side> edge) {
     if (edge.size() > 2 && !across_nonmanifold) return;

@@ -19,7 +19,7 @@ struct Side {
 };
 
 /// All sides, grouped by edge (equal low and high), within a group in triangle order. n log n.
-/// Sides between a vertex and itself are left out: they are no edges.
+/// Sides between a vertex and itself are left out: they are no edges. Vertices are not asked for.
 [[nodiscard]] std::vector<Side> sorted_sides(const TriangleMesh& mesh);
 
 /// Calls visit(span of sides) for every edge, in the order of sorted_sides.
@@ -40,6 +40,7 @@ struct Components {
   std::uint32_t count = 0;
 };
 /// @param across_nonmanifold  whether an edge with more than two triangles joins them
+/// @pre sides are sorted_sides(mesh)
 [[nodiscard]] Components components_of(const TriangleMesh& mesh, std::span<const Side> sides, bool across_nonmanifold);
 
 /// Repeated corners, or a height below 2^-46 of the longest side: nothing that double arithmetic could tell from zero.

@@ -14,7 +14,8 @@ namespace verisim {
 
 namespace {
 
-/// Relative to the mesh's extent: rounding to single precision, to six digits, to five.
+/// Relative to the mesh's extent: rounding to single precision, to six digits, to five. Facts about files, no
+/// heuristics: recover_thresholds_test halves and doubles the tolerance all the same.
 constexpr std::array<double, 3> kUsualTolerances = {3e-7, 4e-6, 4.5e-5};
 
 double extent_of(const TriangleMesh& mesh) {
@@ -53,14 +54,16 @@ struct Segmentation {
   double tolerance = 0;
 };
 
-/// Segmentation with the smallest tolerance, unless a larger one halves the description length. Too small a tolerance
-/// breaks surfaces into pieces; too large a one finds surfaces where there are none. A larger one is not tried if most
-/// of the area that is not flat is on surfaces: then the rest is a free form.
+/// Segmentation with the smallest tolerance, unless a larger one makes the description shorter by description_gain. Too
+/// small a tolerance breaks surfaces into pieces; too large a one finds surfaces where there are none. A larger one is
+/// not tried if most of the area that is not flat is on surfaces: then the rest is a free form.
 Segmentation best_segmentation(const recover::CanonicalMesh& mesh, double extent, const RecoverOptions& options) {
   Segmentation best;
   for (const double usual : kUsualTolerances) {
     Segmentation next{find_regions(mesh, usual * extent, options), usual * extent};
-    if (best.tolerance == 0 || 2 * description_length(next.regions) < description_length(best.regions))
+    if (best.tolerance == 0 ||
+        options.thresholds.description_gain * static_cast<double>(description_length(next.regions)) <
+            static_cast<double>(description_length(best.regions)))
       best = std::move(next);
     if (are_mostly_curved(mesh, best.regions)) break;
   }
@@ -96,7 +99,7 @@ void recover_brep(Part& part, const RecoverOptions& options) {
     part.faces.push_back(recover::face_of(mesh, regions[r]));
     for (const std::uint32_t t : regions[r].triangles) face_of[t] = r;
   }
-  part.edges = recover::edges_between(mesh, regions, tolerance);
+  part.edges = recover::edges_between(mesh, regions, tolerance, options.thresholds);
   for (std::uint32_t e = 0; e < part.edges.size(); ++e) {
     for (const std::uint32_t f : part.edges[e].faces) part.faces[f].edges.push_back(e);
   }

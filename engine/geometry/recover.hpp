@@ -18,6 +18,9 @@
 //                      one.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "engine/geometry/part.hpp"
 
 namespace verisim {
@@ -36,6 +39,43 @@ struct RecoverThresholds {
   double narrower = 0.25;           ///< of a plane's width: the width of a neighbour that curves away from it
   double mostly_sharp = 0.6;        ///< of a plane's border, by length
   double mostly_smooth = 0.7;       ///< of the border of a patch of a free form, by length
+  double description_gain = 2;      ///< times shorter: what a larger tolerance has to make of a description by faces
+
+  // Facets and their surroundings.
+  double same_normal = 0.9998476951563913;  ///< cosine of 1 degree: normals of one facet differ by no more
+  double sliver = 20;                       ///< tolerances: the normal of a triangle of less height is unreliable
+  double noise = 4;                         ///< tolerances: nearer to an axis, to each other, or lower, is noise
+  double fillet_span = -0.2;    ///< cosine of 102 degrees: a fan spans at most a quarter of a tube, a fillet
+  double side_parallel = 0.7;   ///< cosine: a facet's sides that a strip leaves through, along or across
+  std::size_t strip_steps = 4;  ///< facets of a strip to each side
+  std::array<std::size_t, 4> ring_sizes = {2, 3, 6, 12};  ///< smooth sides from a seed: samples from narrow to wide
+  std::size_t retry_steps = 3;   ///< smooth sides from a new region: facets within are tried again
+  std::size_t failed_steps = 2;  ///< smooth sides from a seed without a fit: facets within are not tried
+  std::size_t few_facets = 4;    ///< that meet smoothly: they are planes, a curved surface has more
+
+  // Fits.
+  /// By SurfaceKind. Through fewer points a surface passes by chance: kinds have 3, 5, 6, 4 and 7 parameters, and a
+  /// whole mesh of points to choose from.
+  std::array<std::size_t, 5> points_min = {3, 8, 8, 9, 14};
+  std::size_t places_min = 5;        ///< around a circle; one fewer at equal steps
+  std::size_t points_of_a_fit = 64;  ///< of a first fit: more say no more of seven parameters
+  double near_fit = 30;              ///< tolerances, root of the mean square: a fit this near may improve slowly
+  double fine_fit = 1e-3;            ///< tolerances, likewise: a fit this near is finished
+  double fast = 0.5;                 ///< times the cost after a step: what is not near has to get there fast
+  double settled = 0.99;             ///< times the cost after a step: one that lowers it by less is the last
+  double narrowest_cone = 0.005;     ///< tangent of the half angle: less is a cylinder
+  double widest_cone = 200;          ///< likewise: more is a plane
+  double largest_radius = 1000;      ///< sizes of the sample: beyond it is flat
+
+  // Free forms: their patches pass for surfaces by chance.
+  std::size_t patch_triangles_max = 200;  ///< a larger region is a surface
+  std::size_t cluster_min = 12;           ///< patches of a cluster
+  std::size_t triangles_each_max = 30;    ///< mean triangles of its patches
+
+  // Edges.
+  double curve_slack = 3;            ///< tolerances: the intersection of two surfaces is off where both are
+  double not_parallel = 1e-8;        ///< 1 - cosine: axes that differ by more than 1.4e-4 rad are not one
+  double section_cosine_min = 1e-3;  ///< of a plane's normal to a cylinder's axis: less cuts no ellipse, but lines
 };
 
 struct RecoverOptions {

@@ -110,6 +110,7 @@ void append_text(std::string& text, const Solid& solid) {
     text += ';';
   }
   for (std::size_t i = 0; i < solid.children.size(); ++i) {
+    VERISIM_ASSERT(solid.children[i] != nullptr);
     if (i > 0) text += ',';
     append_text(text, *solid.children[i]);
   }

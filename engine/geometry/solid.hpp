@@ -20,7 +20,7 @@ struct Solid {
   std::vector<std::shared_ptr<const Solid>> children;  ///< difference, sum, intersection: two; placed: one
   Pose placement;                                      ///< placed only: applied to the child
 
-  /// A canonical text, equal for equal solids: the name under which a run file stores the result.
+  /// A canonical text, equal for equal solids: the name under which a run file stores the result. @pre no child is null
   [[nodiscard]] std::string text() const;
 };
 

@@ -62,6 +62,16 @@ struct flock whole_file(int type) {
   return lock;
 }
 
+/// Opens a file to be written anew: a plain one or none. A FIFO would make the opening wait, a link would lead it away.
+int open_anew(const std::string& path) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) refuse_write(path, "it is no plain file");
+  const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+  const int descriptor = ::open(path.c_str(), flags, kPermissions);
+  if (descriptor < 0) refuse(path);
+  return descriptor;
+}
+
 bool marked_by_another(int descriptor) {
   struct flock lock = whole_file(F_WRLCK);
   return ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
@@ -78,26 +88,29 @@ std::string system_cause() {
 }
 
 Replacement::~Replacement() {
-  if (!committed_) ::unlink(path_.c_str());
+  struct stat info {};  // what is no plain file is not of its making
+  if (committed_ || kept_) return;
+  if (::lstat(path_.c_str(), &info) == 0 && S_ISREG(info.st_mode)) ::unlink(path_.c_str());
 }
 
-void Replacement::copy_from(int descriptor) const {
-  const Descriptor to(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
-  if (to.id < 0) refuse(path_);
-  if (::lseek(descriptor, 0, SEEK_SET) < 0) refuse(path_);
+void copy_file(const std::string& path, int from, int to) {
+  if (::lseek(from, 0, SEEK_SET) < 0) refuse(path);
   for (;;) {
-    const ssize_t count = ::copy_file_range(descriptor, nullptr, to.id, nullptr, std::size_t{1} << 30, 0);
+    const ssize_t count = ::copy_file_range(from, nullptr, to, nullptr, std::size_t{1} << 30, 0);
     if (count == 0) return;
     if (count > 0 || errno == EINTR) continue;
-    if (errno != EXDEV && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP) refuse(path_);
-    copy_by_reading(path_, descriptor, to.id);
-    return;
+    if (errno != EXDEV && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP) refuse(path);
+    return copy_by_reading(path, from, to);
   }
 }
 
+void Replacement::copy_from(int descriptor) const {
+  const Descriptor to(open_anew(path_));
+  copy_file(path_, descriptor, to.id);
+}
+
 void Replacement::write(const std::string& content) const {
-  const Descriptor to(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
-  if (to.id < 0) refuse(path_);
+  const Descriptor to(open_anew(path_));
   write_all(path_, to.id, content.data(), content.size());
 }
 
@@ -108,9 +121,10 @@ void Replacement::commit() {
 }
 
 MarkedFile::MarkedFile(const std::string& path, Mark mark)
-    : descriptor_(::open(path.c_str(), O_RDWR | O_CLOEXEC | (mark == Mark::writer ? O_CREAT : 0), kPermissions)) {
+    : descriptor_(
+          ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | (mark == Mark::writer ? O_CREAT : 0), kPermissions)) {
   const bool read_only = descriptor_ < 0 && (errno == EACCES || errno == EROFS) && mark == Mark::recovery;
-  if (read_only) descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (read_only) descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) return;
   if (read_only) {  // cannot be marked, only asked
     refused_ = marked_by_another(descriptor_);
@@ -171,7 +185,7 @@ void Reservation::ensure(std::uint64_t bytes, std::uint64_t step) {
 }
 
 bool is_being_written(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   return file.id >= 0 && marked_by_another(file.id);
 }
 

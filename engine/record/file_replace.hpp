@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 /// The system's text for the last failed call ("No space left on device").
@@ -13,8 +15,17 @@ namespace verisim {
 /// Error(io): "PATH: cannot be written (CAUSE); …".
 [[noreturn]] void refuse_write(const std::string& path, const std::string& cause);
 
-/// A file beside `target` that replaces it at commit(). It is removed if commit() is never called. A leftover of a
-/// killed process is overwritten.
+/// Copies all bytes of one open file into another. Error(io) naming `path`.
+void copy_file(const std::string& path, int from, int to);
+
+/// What another run is writing: Error(io), told apart so that a default name can be another.
+class BeingWritten : public Error {
+ public:
+  explicit BeingWritten(const std::string& what) : Error(ErrorKind::io, what) {}
+};
+
+/// A file beside `target` that replaces it at commit(). It is removed if neither commit() nor keep() is called. A
+/// leftover of a killed process is overwritten.
 class Replacement {
  public:
   /// `suffix` is added to the target's name: ".part".
@@ -30,10 +41,13 @@ class Replacement {
   void write(const std::string& content) const;
   /// Replaces the target. Error(io). A second call does nothing.
   void commit();
+  /// Leaves the file where it is, under its own name: it holds what would else be lost. Nothing once it is committed.
+  void keep() { kept_ = !committed_; }
+  [[nodiscard]] bool is_kept() const { return kept_; }
 
  private:
   std::string target_, path_;
-  bool committed_ = false;
+  bool committed_ = false, kept_ = false;
 };
 
 /// An open file and this process's mark on it. The system removes the mark when the process ends, however it ends. A

@@ -1,6 +1,7 @@
 #include "engine/record/hdf5_wrapper.hpp"
 
 #include <cstring>
+#include <limits>
 
 #include "engine/base/error.hpp"
 
@@ -123,6 +124,19 @@ Handle file_access() {
   check_status(H5Pset_libver_bounds(list, H5F_LIBVER_V110, H5F_LIBVER_V110), "format");
   check_status(H5Pset_fclose_degree(list, H5F_CLOSE_STRONG), "access");
   check_status(H5Pset_file_locking(list, true, true), "locking");
+  return list;
+}
+
+Handle writer_access() {
+  Handle list = file_access();
+  H5AC_cache_config_t cache;
+  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  check_status(H5Pget_mdc_config(list, &cache), "cache");
+  cache.evictions_enabled = false;  // which asks that nothing resizes the cache
+  cache.incr_mode = H5C_incr__off;
+  cache.flash_incr_mode = H5C_flash_incr__off;
+  cache.decr_mode = H5C_decr__off;
+  check_status(H5Pset_mdc_config(list, &cache), "cache");
   return list;
 }
 
@@ -267,6 +281,8 @@ void write_attribute(hid_t object, const std::string& name, const Attribute& val
     write_typed(object, name, type, type, {}, &pointer);
   } else if (const auto* number = std::get_if<double>(&value)) {
     write_typed(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {}, number);
+  } else if (const auto* large = std::get_if<std::uint64_t>(&value)) {
+    write_typed(object, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, {}, large);
   } else {
     write_typed(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {}, &std::get<std::int64_t>(value));
   }
@@ -295,6 +311,9 @@ Attribute read_attribute(hid_t object, const std::string& name) {
       return value;
     }
     case H5T_INTEGER: {
+      std::uint64_t large = 0;
+      check_status(H5Aread(a.id, H5T_NATIVE_UINT64, &large), name.c_str());  // what is negative becomes 0
+      if (large > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) return large;
       std::int64_t value = 0;
       check_status(H5Aread(a.id, H5T_NATIVE_INT64, &value), name.c_str());
       return value;
@@ -322,7 +341,7 @@ std::vector<std::string> read_strings(hid_t object, const std::string& name) {
   return string_elements(a.id, a.type, a.count);
 }
 
-std::map<std::string, Attribute> read_attributes(hid_t object) {
+std::vector<std::string> attribute_names(hid_t object) {
   std::vector<std::string> names;
   const H5A_operator2_t collect = [](hid_t, const char* name, const H5A_info_t*, void* into) -> herr_t {
     static_cast<std::vector<std::string>*>(into)->emplace_back(name);
@@ -330,9 +349,21 @@ std::map<std::string, Attribute> read_attributes(hid_t object) {
   };
   hsize_t position = 0;
   check_status(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names), "attributes");
+  return names;
+}
+
+std::map<std::string, Attribute> read_attributes(hid_t object) {
   std::map<std::string, Attribute> attributes;
-  for (const std::string& name : names) attributes.emplace(name, read_attribute(object, name));
+  for (const std::string& name : attribute_names(object)) attributes.emplace(name, read_attribute(object, name));
   return attributes;
+}
+
+void read_texts_of_attributes(hid_t object) {
+  for (const std::string& name : attribute_names(object)) {
+    const OpenAttribute a = open_attribute(object, name);
+    if (H5Tget_class(a.type) == H5T_STRING && H5Tis_variable_str(a.type) > 0)
+      static_cast<void>(string_elements(a.id, a.type, a.count));
+  }
 }
 
 std::vector<std::string> children(hid_t group) {

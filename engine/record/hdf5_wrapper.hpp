@@ -71,7 +71,11 @@ class Handle {
 /// Shape of a dataset in memory or file; an empty list is a scalar.
 using Shape = std::vector<hsize_t>;
 
-[[nodiscard]] Handle file_access();    ///< property list: format 1.10 (SWMR), files locked where the system can
+[[nodiscard]] Handle file_access();  ///< property list: format 1.10 (SWMR), files locked where the system can
+/// The same for a file that many datasets grow in: nothing leaves HDF5's cache of metadata. What it holds of a dataset,
+/// some 5 kB, depends on each other under SWMR, and HDF5 1.10 fails once it throws a part of that out (thousands of
+/// datasets; "Child entry doesn't have a flush dependency parent array").
+[[nodiscard]] Handle writer_access();
 [[nodiscard]] Handle file_creation();  ///< property list: no times, links in order of creation
 [[nodiscard]] Handle link_creation();  ///< property list: creates the groups on the way
 [[nodiscard]] Handle open_group(hid_t location, const std::string& path);
@@ -101,6 +105,9 @@ void write_attribute(hid_t object, const std::string& name, const std::vector<st
 [[nodiscard]] std::int64_t read_integer(hid_t object, const std::string& name);
 [[nodiscard]] std::vector<std::string> read_strings(hid_t object, const std::string& name);
 [[nodiscard]] std::map<std::string, Attribute> read_attributes(hid_t object);
+[[nodiscard]] std::vector<std::string> attribute_names(hid_t object);
+/// Reads every text that an attribute holds in a heap, and forgets it.
+void read_texts_of_attributes(hid_t object);
 
 /// Names of the links of a group, by name.
 [[nodiscard]] std::vector<std::string> children(hid_t group);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/base/error.hpp"
+#include "engine/record/checksums.hpp"
 #include "engine/record/recover.hpp"
 #include "engine/record/run_inputs.hpp"
 
@@ -18,6 +19,8 @@ using hdf5::Handle;
 
 // A flush rewrites the last chunk of every column: small chunks keep that cheap (a flush comes every 50 rows).
 constexpr hsize_t kChunkRows = 256;
+constexpr hsize_t kChunkTableRows = 1024;
+constexpr hsize_t kChunkPairs = 64;
 constexpr hsize_t kChunkEvents = 64;
 constexpr std::uint64_t kIndexBytes = 4096;
 constexpr std::uint64_t kReserveStep = 16 << 20;
@@ -82,7 +85,7 @@ bool is_live(const std::string& path) {
 }
 
 [[noreturn]] void refuse_second_run(const std::string& path) {
-  fail(ErrorKind::io, "{}: another run is writing it; choose another name or wait until that ends", path);
+  throw BeingWritten(fmt::format("{}: another run is writing it; choose another name or wait until that ends", path));
 }
 
 // The mark on PATH.part, which one run at a time can have. A run that has renamed its file is found by that name, and
@@ -103,17 +106,51 @@ std::unique_ptr<MarkedFile> claim(const std::string& path) {
 
 }  // namespace
 
+namespace {
+
+// The longest beginning of `text` that fits and does not end inside a UTF-8 character.
+std::size_t fitting_length(std::string_view text, std::size_t room) {
+  if (text.size() <= room) return text.size();
+  std::size_t length = room;
+  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
+  return length;
+}
+
+template <std::size_t N>
+void store(char (&to)[N], std::string_view text) {
+  text.copy(to, fitting_length(text, N - 1));
+}
+
+Handle fixed_text(std::size_t size) {
+  Handle type(check(H5Tcopy(H5T_C_S1), "text"), H5Tclose);
+  check_status(H5Tset_size(type, size), "text");
+  check_status(H5Tset_cset(type, H5T_CSET_UTF8), "text");
+  return type;
+}
+
+}  // namespace
+
+StoredEvent stored_event(double time, std::string_view kind, std::string_view text) {
+  StoredEvent event;
+  event.time = time;
+  store(event.kind, kind);
+  store(event.text, text);
+  return event;
+}
+
 Handle event_type() {
-  const auto text = [](std::size_t size) {
-    Handle type(check(H5Tcopy(H5T_C_S1), "text"), H5Tclose);
-    check_status(H5Tset_size(type, size), "text");
-    check_status(H5Tset_cset(type, H5T_CSET_UTF8), "text");
-    return type;
-  };
   Handle type(check(H5Tcreate(H5T_COMPOUND, sizeof(StoredEvent)), "event"), H5Tclose);
   check_status(H5Tinsert(type, "time", HOFFSET(StoredEvent, time), H5T_IEEE_F64LE), "event");
-  check_status(H5Tinsert(type, "kind", HOFFSET(StoredEvent, kind), text(sizeof(StoredEvent::kind))), "event");
-  check_status(H5Tinsert(type, "text", HOFFSET(StoredEvent, text), text(sizeof(StoredEvent::text))), "event");
+  check_status(H5Tinsert(type, "kind", HOFFSET(StoredEvent, kind), fixed_text(sizeof(StoredEvent::kind))), "event");
+  check_status(H5Tinsert(type, "text", HOFFSET(StoredEvent, text), fixed_text(sizeof(StoredEvent::text))), "event");
+  return type;
+}
+
+Handle pair_type(std::size_t length) {
+  Handle type(check(H5Tcreate(H5T_COMPOUND, 2 * length), "pair"), H5Tclose);
+  const Handle text = fixed_text(length);
+  check_status(H5Tinsert(type, "first", 0, text), "pair");
+  check_status(H5Tinsert(type, "second", length, text), "pair");
   return type;
 }
 
@@ -125,9 +162,11 @@ void RunWriter::guard(Work work) {
     work();
   } catch (const hdf5::Failure& failure) {
     failed_ = true;
-    refuse_write(path_, failure.what());
+    if (has_rows_) part_.keep();
+    refuse_write(part_.is_kept() ? part_.path() : path_, failure.what());
   } catch (const Error&) {
     failed_ = true;
+    if (has_rows_) part_.keep();
     throw;
   }
 }
@@ -150,45 +189,80 @@ void RunWriter::create(const RunHeader& header) {
       H5Fclose);
   hdf5::write_attribute(file, "format", std::string(kRunFormat));
   hdf5::write_attribute(file, "format_version", kRunFormatVersion);
-  hdf5::write_attribute(file, "columns", static_cast<std::int64_t>(schema_.columns().size()));
+  hdf5::write_attribute(file, "columns", static_cast<std::int64_t>(schema_.columns().size() + schema_.table().size()));
   for (const auto& [name, value] : header.attributes) replace_attribute(file, name, value);
   write_inputs(file, header.files, header.models);
   static_cast<void>(hdf5::create_group(file, "/summary"));
   std::int64_t order = 0;
-  for (const Column& column : schema_.columns()) {
+  const auto add = [&](const Column& column, hsize_t chunk_rows) {
     const Handle type = column_type(column);
-    const Handle dataset = growing_dataset(file, column.path, type, column.width, kChunkRows);
+    const Handle dataset = growing_dataset(file, column.path, type, column.width, chunk_rows);
     hdf5::write_attribute(dataset, "units", column.units);
     hdf5::write_attribute(dataset, "description", column.description);
     hdf5::write_attribute(dataset, "order", order++);
     if (!column.enum_names.empty()) hdf5::write_attribute(dataset, "names", column.enum_names);
     if (!column.due.empty()) hdf5::write_attribute(dataset, "rows_where", column.due);
-  }
+    if (!column.rows_in_frame.empty()) hdf5::write_attribute(dataset, "rows_in_frame", column.rows_in_frame);
+  };
+  for (const Column& column : schema_.columns()) add(column, kChunkRows);
+  for (const Column& column : schema_.table()) add(column, kChunkTableRows);
   const Handle events = growing_dataset(file, "/events", event_type(), 1, kChunkEvents);
   hdf5::write_attribute(events, "units", std::string("s, 1, 1"));
   hdf5::write_attribute(events, "description", std::string("What happened: simulated time, kind, text"));
+  if (!schema_.pairs_in_frame.empty()) {
+    const Handle pairs = growing_dataset(file, kPairsPath, pair_type(name_length()), 1, kChunkPairs);
+    hdf5::write_attribute(pairs, "units", std::string("1, 1"));
+    hdf5::write_attribute(pairs, "description",
+                          std::string("Pairs of bodies that came near each other, in the order in which they did"));
+    hdf5::write_attribute(pairs, "rows_in_frame", schema_.pairs_in_frame);
+  }
   check_status(H5Fflush(file, H5F_SCOPE_LOCAL), path_.c_str());
+}
+
+std::size_t RunWriter::name_length() const {
+  std::size_t longest = 0;
+  for (const std::string& name : schema_.bodies) longest = std::max(longest, name.size());
+  return longest + 1;
 }
 
 void RunWriter::start_swmr() {
   file_ = Handle(
-      check(H5Fopen(part_.path().c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, hdf5::file_access()), path_.c_str()),
+      check(H5Fopen(part_.path().c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, hdf5::writer_access()), path_.c_str()),
       H5Fclose);
-  for (const Column& column : schema_.columns()) {
-    columns_.push_back({.column = column,
-                        .type = column_type(column),
-                        .dataset = open_growing(file_, column.path, kChunkRows * column.bytes()),
-                        .due = due_offset(column)});
-  }
-  event_type_ = event_type();
-  event_dataset_ = open_growing(file_, "/events", kChunkEvents * sizeof(StoredEvent));
+  const auto open = [&](const Column& column, hsize_t chunk_rows) {
+    Stored stored;
+    stored.column = column;
+    stored.type = column_type(column);
+    stored.dataset = open_growing(file_, column.path, chunk_rows * column.bytes());
+    stored.due = due_offset(column);
+    return stored;
+  };
+  for (const Column& column : schema_.columns()) columns_.push_back(open(column, kChunkRows));
+  for (const Column& column : schema_.table()) table_.push_back(open(column, kChunkTableRows));
+  events_.type = event_type();
+  events_.dataset = open_growing(file_, "/events", kChunkEvents * sizeof(StoredEvent));
+  if (schema_.pairs_in_frame.empty()) return;
+  pairs_.type = pair_type(name_length());
+  pairs_.dataset = open_growing(file_, kPairsPath, kChunkPairs * 2 * name_length());
+}
+
+std::vector<RunWriter::Growing*> RunWriter::growing() {
+  std::vector<Growing*> all = {&events_, &pairs_};
+  for (Stored& stored : columns_) all.push_back(&stored);
+  for (Stored& stored : table_) all.push_back(&stored);
+  return all;
 }
 
 RunWriter::~RunWriter() {
+  if (!failed_ && has_rows_ && file_ >= 0) {  // ended by an exception: whole but for what only a full run has
+    try {
+      close({}, {});
+    } catch (const Error&) {  // then it is left as a kill would leave it
+    }
+  }
   const hdf5::Session session;
   if (failed_) {
-    for (Stored& stored : columns_) stored.dataset.release();
-    event_dataset_.release();
+    for (Growing* growing : growing()) growing->dataset.release();
     file_.release();
   }
   try {
@@ -198,33 +272,44 @@ RunWriter::~RunWriter() {
 }
 
 void RunWriter::close_handles() {
-  columns_.clear();
-  event_dataset_.reset();
-  event_type_.reset();
+  for (Growing* growing : growing()) growing->dataset.reset();
   if (file_ >= 0) check_status(H5Fclose(file_.release()), path_.c_str());
 }
 
-void RunWriter::reserve(std::size_t rows, std::size_t events) {
+void RunWriter::reserve(std::size_t rows, std::size_t table_rows, std::size_t events, std::size_t pairs) {
   // A new chunk and a page of its index for every column, though most of them need none.
   const std::uint64_t chunks = rows / kChunkRows + 2;
+  const std::uint64_t table_chunks = table_rows / kChunkTableRows + 2;
   const std::uint64_t event_chunks = events / kChunkEvents + 2;
-  const std::uint64_t bytes = chunks * kChunkRows * schema_.row_bytes() +
-                              event_chunks * kChunkEvents * sizeof(StoredEvent) + (columns_.size() + 8) * kIndexBytes;
+  const std::uint64_t pair_chunks = pairs / kChunkPairs + 2;
+  const std::uint64_t bytes =
+      chunks * kChunkRows * schema_.row_bytes() + table_chunks * kChunkTableRows * schema_.table_row_bytes() +
+      event_chunks * kChunkEvents * sizeof(StoredEvent) + pair_chunks * kChunkPairs * 2 * name_length() +
+      (columns_.size() + table_.size() + 8) * kIndexBytes;
   room_->ensure(bytes, kReserveStep);
 }
 
-void RunWriter::append(const std::byte* rows, std::size_t count) {
+void RunWriter::append_packed(std::vector<Stored>& columns, const std::byte* rows, std::size_t count,
+                              std::size_t row_bytes) {
   VERISIM_ASSERT(rows != nullptr || count == 0);
   const hdf5::Session session;
   guard([&] {
-    for (Stored& stored : columns_) {
-      const std::size_t packed = pack(stored, rows, count);
+    for (Stored& stored : columns) {
+      const std::size_t packed = pack(stored, rows, count, row_bytes);
       if (packed == 0) continue;
       append_values(stored.dataset, stored.type, stored.column.width, stored.rows, packed, packed_.data());
       stored.rows += packed;
     }
   });
+}
+
+void RunWriter::append(const std::byte* rows, std::size_t count) {
+  append_packed(columns_, rows, count, schema_.row_bytes());
   has_rows_ = has_rows_ || count > 0;
+}
+
+void RunWriter::append_to_table(const std::byte* rows, std::size_t count) {
+  append_packed(table_, rows, count, schema_.table_row_bytes());
 }
 
 std::optional<std::size_t> RunWriter::due_offset(const Column& column) const {
@@ -236,12 +321,12 @@ std::optional<std::size_t> RunWriter::due_offset(const Column& column) const {
 }
 
 // The values of one column, one after the other. Returns how many of the rows have one.
-std::size_t RunWriter::pack(const Stored& stored, const std::byte* rows, std::size_t count) {
+std::size_t RunWriter::pack(const Stored& stored, const std::byte* rows, std::size_t count, std::size_t row_bytes) {
   const std::size_t bytes = stored.column.bytes();
   packed_.resize(std::max(packed_.size(), count * bytes));
   std::size_t packed = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::byte* row = rows + i * schema_.row_bytes();
+    const std::byte* row = rows + i * row_bytes;
     std::uint32_t due = 1;
     if (stored.due) std::memcpy(&due, row + *stored.due, sizeof due);
     if (due != 0) std::memcpy(&packed_[packed++ * bytes], row + stored.column.offset, bytes);
@@ -252,8 +337,22 @@ std::size_t RunWriter::pack(const Stored& stored, const std::byte* rows, std::si
 void RunWriter::append(const StoredEvent* events, std::size_t count) {
   VERISIM_ASSERT(events != nullptr || count == 0);
   const hdf5::Session session;
-  guard([&] { append_values(event_dataset_, event_type_, 1, events_, count, events); });
-  events_ += count;
+  guard([&] { append_values(events_.dataset, events_.type, 1, events_.rows, count, events); });
+  events_.rows += count;
+}
+
+void RunWriter::append(const BodyPair* pairs, std::size_t count) {
+  VERISIM_ASSERT(pairs != nullptr || count == 0);
+  if (count == 0) return;
+  const hdf5::Session session;
+  const std::size_t length = name_length();
+  std::vector<char> texts(count * 2 * length, '\0');
+  for (std::size_t i = 0; i < count; ++i) {
+    schema_.bodies[pairs[i].first].copy(&texts[2 * i * length], length - 1);
+    schema_.bodies[pairs[i].second].copy(&texts[(2 * i + 1) * length], length - 1);
+  }
+  guard([&] { append_values(pairs_.dataset, pairs_.type, 1, pairs_.rows, count, texts.data()); });
+  pairs_.rows += count;
 }
 
 void RunWriter::flush() {
@@ -277,6 +376,7 @@ void RunWriter::close(const std::map<std::string, Attribute>& summary, const std
       for (const auto& [name, value] : root) replace_attribute(file, name, value);
       const Handle group = hdf5::open_group(file, "/summary");
       for (const auto& [name, value] : summary) replace_attribute(group, name, value);
+      write_checksums(file);
       check_status(H5Fflush(file, H5F_SCOPE_LOCAL), path_.c_str());
     }
     finished.commit();

@@ -3,14 +3,17 @@
 
 namespace verisim {
 
-std::size_t Schema::add(Column column) {
+void Schema::add(Column column) {
   VERISIM_ASSERT(column.path.starts_with('/'));
   VERISIM_ASSERT(column.width > 0);
-  for (const Column& other : columns_) {
-    if (other.path == column.path) {
-      fail(ErrorKind::input, "'{}' would be stored twice; give every body, device and link a name of its own",
-           column.path);
-    }
+  if (!paths_.insert(column.path).second) {
+    fail(ErrorKind::input, "'{}' would be stored twice; give every body and device a name of its own", column.path);
+  }
+  if (!column.rows_in_frame.empty()) {
+    column.offset = table_row_bytes_;
+    table_row_bytes_ += column.bytes();
+    table_.push_back(std::move(column));
+    return;
   }
   column.offset = row_bytes_;
   row_bytes_ += column.bytes();
@@ -19,7 +22,6 @@ std::size_t Schema::add(Column column) {
     state_bytes_ = row_bytes_;
   }
   columns_.push_back(std::move(column));
-  return columns_.size() - 1;
 }
 
 }  // namespace verisim

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 
 /// A trace as a table of numbers.
@@ -21,7 +23,12 @@ struct Trace {
   std::vector<std::string> columns;          ///< "t" first
   std::vector<double> values;                ///< (rows, columns), row-major
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
-  [[nodiscard]] double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }
+  /// @pre row < rows(), and there is such a column
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const {
+    VERISIM_ASSERT(column < columns.size());
+    VERISIM_ASSERT(row * columns.size() + column < values.size());
+    return values[row * columns.size() + column];
+  }
   /// Index of a column, or -1.
   [[nodiscard]] int column(const std::string& name) const;
 };

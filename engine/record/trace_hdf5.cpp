@@ -4,6 +4,7 @@
 #include "engine/record/file_replace.hpp"
 #include "engine/record/hdf5_wrapper.hpp"
 #include "engine/record/heap_check.hpp"
+#include "engine/record/object_walk.hpp"
 #include "engine/record/trace_form.hpp"
 
 namespace verisim {
@@ -24,6 +25,15 @@ Handle open_image(const std::string& content) {
   return {check(H5Fopen("trace", H5F_ACC_RDONLY, access), "open"), H5Fclose};
 }
 
+double as_number(const Attribute& value) {
+  return std::visit(
+      [](const auto& v) {
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(v)>>) return static_cast<double>(v);
+        return 0.0;
+      },
+      value);
+}
+
 std::string as_text(const Attribute& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
@@ -37,8 +47,7 @@ void read_keys(const std::string& name, hid_t file, Trace& trace) {
     } else if (key == "rate_hz") {
       if (std::holds_alternative<std::string>(value))
         fail(ErrorKind::input, "{}: rate_hz is text; make it a number", name);
-      trace.rate_hz = std::holds_alternative<double>(value) ? std::get<double>(value)
-                                                            : static_cast<double>(std::get<std::int64_t>(value));
+      trace.rate_hz = as_number(value);
     } else {
       trace.extra[key] = as_text(value);
     }
@@ -71,6 +80,7 @@ Trace read_trace_hdf5(const std::string& name, const std::string& content) {
   const hdf5::Session session;
   try {
     const Handle file = open_image(content);
+    check_objects(file, content.size(), SoftLinks::left_alone);
     Trace trace;
     read_keys(name, file, trace);
     std::vector<std::vector<double>> columns;

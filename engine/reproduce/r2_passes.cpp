@@ -2,7 +2,7 @@
 // 8.5), over seeds, clearances and voxel sizes. The dissertation counted one operator once.
 #include <fmt/format.h>
 
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
 #include "engine/reproduce/statistics.hpp"
 
@@ -41,7 +41,7 @@ Batch run_batch(const Workshop& workshop, const Fit& fit, const char* hybrid, st
     csv += fmt::format("{},{},{},{},{},{}\n", seed, passes, run.simulated_s, run.collision_frames, run.force_max,
                        run.state_hash);
   }
-  write_file(batch.csv_file, csv);
+  write_text(batch.csv_file, csv, workshop.force);
   return batch;
 }
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "engine/constraint/recognition_table.hpp"
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
 
 namespace verisim::reproduce {
@@ -54,7 +54,7 @@ std::vector<Row> r4_recognition(const Workshop& workshop) {
   const std::span<const RecognitionRow> published = published_recognition_rows();
   const RecognitionFits then = fit(published);
   const std::string file = workshop.file("r4_recognition.csv");
-  write_file(file, csv_of(table));
+  write_text(file, csv_of(table), workshop.force);
 
   const auto row = [&](const char* what, const char* unit, double was, double is, std::string why) {
     return Row{"R4", what, unit, was, is, {}, std::move(why), {file}};

@@ -8,7 +8,7 @@
 
 #include "engine/base/quantile.hpp"
 #include "engine/geometry/loader.hpp"
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
 #include "engine/voxel/association.hpp"
 #include "engine/voxel/voxelize.hpp"
@@ -70,7 +70,7 @@ Row association_row(const Workshop& workshop) {
     if (coarse == 0) coarse = a.seconds + b.seconds;
     fine = {a.voxels + b.voxels, a.seconds + b.seconds};
   }
-  write_file(file, csv);
+  write_text(file, csv, workshop.force);
   return {
       "R5",
       "association of voxels with b-reps, block and pin",

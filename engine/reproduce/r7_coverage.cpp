@@ -5,7 +5,7 @@
 #include <array>
 
 #include "engine/base/error.hpp"
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
 #include "engine/wii/coverage.hpp"
 
@@ -62,7 +62,7 @@ std::vector<Row> r7_coverage(const Workshop& workshop) {
       "corrected it gives {:.5g} m3, from which the count is {:+.1f} standard errors away (as printed: {:+.1f})",
       corrected, off_by(counted, corrected), off_by(counted, printed));
   rows.push_back(row);
-  write_file(file, csv);
+  write_text(file, csv, workshop.force);
   return rows;
 }
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstring>
 
-#include "engine/geometry/write_file.hpp"
+#include "engine/record/output_place.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/reproduce/reproductions.hpp"
 
@@ -52,7 +52,7 @@ std::vector<Row> try_out(const Workshop& workshop, const Conflict& conflict, con
     least = std::min(least, energy);
     csv += fmt::format("{},{},{},{},{}\n", seed, run.outcome, run.measure("depth"), energy, run.state_hash);
   }
-  write_file(csv_file, csv);
+  write_text(csv_file, csv, workshop.force);
   return {{"R9",
            fmt::format("{}, {}: assembles", conflict.what, hybrid),
            "",

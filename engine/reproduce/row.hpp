@@ -53,6 +53,7 @@ struct Workshop {
   bool quick = false;  ///< all results together in under 45 s on two cores
   std::string folder;  ///< exists; every file of a measurement goes here
   std::function<TimedRun(const RunRequest&)> run;
+  bool force = false;  ///< replace files of other kinds as well
 
   /// The path of a file in `folder`.
   [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }

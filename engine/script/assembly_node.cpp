@@ -12,7 +12,7 @@ namespace {
 
 struct Leaf {
   const Node* node;
-  double scale;
+  double scale;  ///< of all groups above it and of its own
   Pose pose;
 };
 
@@ -24,7 +24,7 @@ class Gatherer {
     if (depth > kNodeDepthMax)
       fail(ErrorKind::input, "the object's groups are nested more than {} deep; flatten them", kNodeDepthMax);
     if (node.kind != Node::Kind::group) {
-      leaves.push_back({&node, scale, pose});
+      leaves.push_back({&node, scale * node.file_scale, pose});
       return;
     }
     // pose * (scale * (inner.pose * (inner.scale * x))): a similarity again.
@@ -44,7 +44,7 @@ bool same(const Pose& a, const Pose& b) {
 std::vector<Part> parts_of(const Leaf& leaf, Inputs& inputs) {
   const Node& node = *leaf.node;
   if (node.kind == Node::Kind::solid) return {inputs.solid(*scaled(node.solid, leaf.scale), LoadOptions{})};
-  const std::vector<Part>& parts = load_file(inputs, node.file, leaf.scale * node.file_scale, node.recover);
+  const std::vector<Part>& parts = load_file(inputs, node.file, leaf.scale, node.recover);
   if (node.part == 0) return parts;
   if (static_cast<std::size_t>(node.part) > parts.size())
     fail(ErrorKind::input, "{}: has no part {}; it has {} (modelParts lists them)", node.file, node.part, parts.size());
@@ -76,6 +76,7 @@ struct Placer {
 }  // namespace
 
 const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale, bool recover) {
+  VERISIM_ASSERT(scale > 0);  // to the loader 0 would mean: as the file has it
   LoadOptions options;
   options.recover = recover;
   if (scale != 1) options.scale = scale;
@@ -122,11 +123,14 @@ Node::~Node() {
 
 PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs) {
   Gatherer gatherer;
-  for (const auto& node : nodes) gatherer.visit(*node, 1, Pose{}, 1);
+  for (const auto& node : nodes) {
+    VERISIM_ASSERT(node != nullptr);
+    gatherer.visit(*node, 1, Pose{}, 1);
+  }
   const std::vector<Leaf>& leaves = gatherer.leaves;
   if (leaves.empty()) fail(ErrorKind::input, "the object has no geometry; give it a Model or a Solid");
   for (const Leaf& leaf : leaves)
-    if (!is_placement(leaf.pose))
+    if (!is_placement(leaf.pose) || !is_positive(leaf.scale))
       fail(ErrorKind::input, "the object's transforms take it beyond all numbers; give smaller positions and scales");
   PlacedParts result;
   bool one_placement = true;

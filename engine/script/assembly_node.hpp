@@ -66,10 +66,11 @@ inline constexpr int kNodesMax = 10'000;
 inline constexpr int kNodeDepthMax = 100;
 
 /// Loads the leaves below `nodes`. Error(input): more or deeper nested nodes than the limits above; from loading;
-/// nothing in it; a part number that the file does not have.
+/// nothing in it; a part number that the file does not have; scales and positions that lead beyond all numbers.
+/// @pre no node is null
 [[nodiscard]] PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inputs);
 
-/// The parts of a model file, with the meaning of scale and recover that LoadOptions has.
+/// The parts of a model file, with the meaning of scale and recover that LoadOptions has. @pre scale is above 0
 [[nodiscard]] const std::vector<Part>& load_file(Inputs& inputs, const std::string& file, double scale, bool recover);
 
 /// A part in other coordinates: every point p becomes X * p. Area, volume and trimmed bounds do not change.

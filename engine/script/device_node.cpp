@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/error.hpp"
 #include "engine/device/sources.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/script_state.hpp"
@@ -32,7 +33,10 @@ HapticSamples read_samples(Inputs& inputs, const std::string& name, const TraceL
 
 DeviceNode& innermost(DeviceNode& node) {
   DeviceNode* at = &node;
-  while (at->is_filter()) at = at->inner.get();
+  while (at->is_filter()) {
+    VERISIM_ASSERT(at->inner != nullptr);
+    at = at->inner.get();
+  }
   return *at;
 }
 
@@ -46,8 +50,10 @@ DevicePointer device_at(lua_State* L, int index, const std::string& what) {
 }
 
 DevicePointer new_device(lua_State* L, Fields& fields, const char* default_name) {
+  VERISIM_ASSERT(*default_name != '\0');  // without one it would be a filter
+  ScriptState::of(L).keep(kNodeBytes);
   auto node = std::make_shared<DeviceNode>();
-  node->name = fields.text("name").value_or("");
+  node->name = fields.name().value_or("");
   node->default_name = default_name;
   node->place = where(L);
   return node;
@@ -65,6 +71,8 @@ DevicePointer wrapped_device(lua_State* L, Fields& fields, const char* word) {
 }
 
 DevicePointer new_filter(lua_State* L, DevicePointer inner) {
+  VERISIM_ASSERT(inner != nullptr);
+  ScriptState::of(L).keep(kNodeBytes);
   auto node = std::make_shared<DeviceNode>();
   node->place = where(L);
   node->inner = std::move(inner);
@@ -72,6 +80,7 @@ DevicePointer new_filter(lua_State* L, DevicePointer inner) {
 }
 
 DeviceFactory replay_of(Inputs& inputs, const std::string& trace, double max_gap, bool allow_gaps) {
+  VERISIM_ASSERT(max_gap > 0);
   TraceLimits limits;
   limits.max_gap = max_gap;
   limits.allow_gaps = allow_gaps;
@@ -109,6 +118,8 @@ void name_devices(const std::vector<DevicePointer>& devices) {
 
 std::shared_ptr<Device> make_device(DeviceNode& node, std::uint64_t seed) {
   if (!node.device) {
+    VERISIM_ASSERT(node.make != nullptr);
+    VERISIM_ASSERT(!innermost(node).made_as.empty());
     const std::shared_ptr<Device> inner = node.inner ? make_device(*node.inner, seed) : nullptr;
     node.device = at_place(node.place, [&] { return node.make({innermost(node).made_as, seed, inner}); });
   }

@@ -40,7 +40,8 @@ struct DeviceNode {
 };
 using DevicePointer = std::shared_ptr<DeviceNode>;
 
-/// The hardware or source at the inner end of a chain of filters: it carries the name.
+/// The hardware or source at the inner end of a chain of filters: it carries the name. @pre every filter has an inner
+/// node
 [[nodiscard]] DeviceNode& innermost(DeviceNode& node);
 
 // What a word is made of. They raise with place and reason.
@@ -49,14 +50,15 @@ using DevicePointer = std::shared_ptr<DeviceNode>;
 void check_building(lua_State* L, const char* word);
 [[nodiscard]] DevicePointer device_at(lua_State* L, int index, const std::string& what);
 /// A source, or hardware if the word sets `drivable`, with the name= of `fields`. The word sets `make`.
+/// @pre default_name is not empty
 [[nodiscard]] DevicePointer new_device(lua_State* L, Fields& fields, const char* default_name);
 /// The device that a filter's word is called with: word{ device, … }. Raises for too many filters around one device.
 [[nodiscard]] DevicePointer wrapped_device(lua_State* L, Fields& fields, const char* word);
-/// The word sets `make`.
+/// The word sets `make`. @pre inner is not null
 [[nodiscard]] DevicePointer new_filter(lua_State* L, DevicePointer inner);
 
 /// Of a device that replays a haptic trace: Devices.Replay, and what --bind drives hardware by. Reads the trace at
-/// once.
+/// once. @pre max_gap is above 0
 [[nodiscard]] DeviceFactory replay_of(Inputs& inputs, const std::string& trace, double max_gap, bool allow_gaps);
 
 // What becomes of them after the script, in this order.
@@ -64,6 +66,7 @@ void check_building(lua_State* L, const char* word);
 /// Gives every device its name and what drives it the name that it is made with. Error(input) for a name given twice.
 void name_devices(const std::vector<DevicePointer>& devices);
 /// The device of a node, made when first asked for, from the inside out. Error(input) begins with the node's place.
+/// @pre name_devices has named it; its word has set `make`, which returns no null
 [[nodiscard]] std::shared_ptr<Device> make_device(DeviceNode& node, std::uint64_t seed);
 
 }  // namespace verisim::script

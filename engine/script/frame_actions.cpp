@@ -73,6 +73,7 @@ void FrameActions::drop_removed() {
 int FrameActions::sleep(lua_State* L, std::uint64_t frames, const char* word) {
   if (running_ == nullptr || running_->thread != L)
     raise(L, "Can't call Actions.{} from your main code, only from a frame action!", word);
+  VERISIM_ASSERT(frames > 0);
   running_->wanted = frames;
   return lua_yield(L, 0);
 }

@@ -25,11 +25,11 @@ class FrameActions {
   std::uint64_t add(lua_State* L, int index);
   /// False if the action has ended or was removed.
   bool remove(std::uint64_t id);
-  /// One script frame of 1 / rate seconds: resumes what is due.
+  /// One script frame of 1 / rate seconds: resumes what is due. @pre rate is finite and above 0; no action runs
   void update(double rate);
 
-  /// Lets the action that runs on L sleep for `frames` > 0 frames. For lua_CFunctions: return sleep(...).
-  /// Raises if L is no action's coroutine (`word` begins the message).
+  /// Lets the action that runs on L sleep for so many frames. For lua_CFunctions: return sleep(...).
+  /// Raises if L is no action's coroutine (`word` begins the message). @pre frames > 0
   int sleep(lua_State* L, std::uint64_t frames, const char* word);
   [[nodiscard]] std::size_t count() const { return actions_.size(); }
 

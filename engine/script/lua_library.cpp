@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <new>
+#include <span>
 #include <string>
-#include <vector>
+#include <string_view>
+#include <type_traits>
 
+#include "engine/base/text.hpp"
 #include "engine/script/sandbox.hpp"
 
 namespace verisim::script {
@@ -16,25 +20,25 @@ bool is_object(int type) {
 }
 
 bool has_object_keys(lua_State* L, int table) {
-  for (lua_pushnil(L); lua_next(L, table) != 0; lua_pop(L, 1)) {
-    if (is_object(lua_type(L, -2))) {
-      lua_pop(L, 2);
-      return true;
-    }
-  }
-  return false;
+  // To the end in any case: in which slot an object stands, and with it the work up to there, differs from run to run.
+  bool found = false;
+  for (lua_pushnil(L); lua_next(L, table) != 0; lua_pop(L, 1)) found = found || is_object(lua_type(L, -2));
+  return found;
 }
 
 int next_key(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   lua_settop(L, 2);
-  if (lua_isnil(L, 2)) {
-    Sandbox::of(L).charge(L, 1);
-    if (has_object_keys(L, 1))
-      raise(L,
-            "next() over a table whose keys are tables or functions has no order that is the same in every run; use "
-            "pairs()");
-  }
+  if (lua_isnil(L, 2) && has_object_keys(L, 1))
+    raise(L,
+          "next() over a table whose keys are tables or functions has no order that is the same in every run; use "
+          "pairs()");
+  return lua_next(L, 1) != 0 ? 2 : (lua_pushnil(L), 1);
+}
+
+int plain_next(lua_State* L) {
+  luaL_checktype(L, 1, LUA_TTABLE);
+  lua_settop(L, 2);
   return lua_next(L, 1) != 0 ? 2 : (lua_pushnil(L), 1);
 }
 
@@ -43,7 +47,7 @@ int next_key(lua_State* L) {
 struct OrderedKey {
   int rank;
   double number;
-  std::string text;
+  std::string_view text;  ///< in the key itself
   std::uint64_t order;
   int position;  ///< in the list of keys as the table has them
   bool operator<(const OrderedKey& other) const {
@@ -64,7 +68,7 @@ OrderedKey ordered_key(lua_State* L, int index, int position) {
       std::size_t size = 0;
       const char* data = lua_tolstring(L, index, &size);
       key.rank = 1;
-      key.text.assign(data, size);
+      key.text = {data, size};
       break;
     }
     case LUA_TBOOLEAN:
@@ -76,6 +80,13 @@ OrderedKey ordered_key(lua_State* L, int index, int position) {
       key.order = Sandbox::of(L).creation_order(L, index);
   }
   return key;
+}
+
+/// Leaves a block of Lua's memory on the stack: the list counts as the script's.
+std::span<OrderedKey> new_keys(lua_State* L, int count) {
+  static_assert(std::is_trivially_destructible_v<OrderedKey> && alignof(OrderedKey) <= 8);
+  const auto size = static_cast<std::size_t>(count);
+  return {static_cast<OrderedKey*>(lua_newuserdata(L, size * sizeof(OrderedKey))), size};
 }
 
 // Upvalues: the table, the list of its keys in order, the number of keys given out.
@@ -105,13 +116,17 @@ int pairs(lua_State* L) {
   }
   lua_newtable(L);
   int count = 0;
-  std::vector<OrderedKey> keys;
   for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) {
-    keys.push_back(ordered_key(L, -2, ++count));
     lua_pushvalue(L, -2);
-    lua_rawseti(L, 2, count);
+    lua_rawseti(L, 2, ++count);
   }
-  Sandbox::of(L).charge(L, 10 * keys.size());
+  Sandbox::charge(L, 20 * static_cast<std::uint64_t>(count) * std::bit_width(static_cast<unsigned>(count)));
+  const std::span<OrderedKey> keys = new_keys(L, count);  // 3
+  for (int i = 1; i <= count; ++i) {
+    lua_rawgeti(L, 2, i);
+    new (&keys[static_cast<std::size_t>(i) - 1]) OrderedKey(ordered_key(L, -1, i));
+    lua_pop(L, 1);
+  }
   std::sort(keys.begin(), keys.end());
   lua_pushvalue(L, 1);
   lua_createtable(L, count, 0);
@@ -119,8 +134,9 @@ int pairs(lua_State* L) {
     lua_rawgeti(L, 2, keys[i].position);
     lua_rawseti(L, -2, static_cast<int>(i + 1));
   }
+  lua_remove(L, 3);
   lua_pushnumber(L, 0);
-  lua_pushcclosure(L, guarded<next_of_ordered>, 3);
+  push_function<next_of_ordered, Charge::call>(L, 3);
   return 1;
 }
 
@@ -146,41 +162,29 @@ int to_string(lua_State* L) {
 
 int print(lua_State* L) {
   std::string line;
+  std::size_t left_out = 0;
   const int count = lua_gettop(L);
   for (int i = 1; i <= count; ++i) {
-    lua_pushcfunction(L, guarded<to_string>);
+    push_function<to_string, Charge::call>(L);
     lua_pushvalue(L, i);
     lua_call(L, 1, 1);
     std::size_t size = 0;
     const char* text = lua_tolstring(L, -1, &size);
     if (text == nullptr) raise(L, "'tostring' must give a text to print");
     if (i > 1) line += '\t';
-    line.append(text, size);
+    constexpr std::size_t kLongest = 10'000;  // what is more is counted and left out
+    const std::size_t taken = std::min(size, kLongest - std::min(line.size(), kLongest));
+    line.append(text, taken);
+    left_out += size - taken;
     lua_pop(L, 1);
   }
-  Sandbox::of(L).charge(L, 500 + line.size());  // it is kept outside Lua's memory
+  Sandbox::charge(L, line.size());
+  if (left_out > 0) line += fmt::format(" … ({} more bytes)", left_out);
   Sandbox::of(L).print(line);
   return 0;
 }
 
-// xpcall(f, handler). Lua's own calls the handler where the error is raised; if that is the hook that counts, nothing
-// would count the handler's own work. Here it is called when f has ended.
-int call_with_handler(lua_State* L) {
-  luaL_checkany(L, 2);
-  lua_settop(L, 2);
-  lua_pushvalue(L, 1);
-  if (lua_pcall(L, 0, LUA_MULTRET, 0) == 0) {
-    lua_pushboolean(L, 1);
-    lua_replace(L, 2);
-    return lua_gettop(L) - 1;
-  }
-  lua_pushvalue(L, 2);
-  lua_insert(L, -2);
-  lua_call(L, 1, 1);
-  lua_pushboolean(L, 0);
-  lua_insert(L, -2);
-  return 2;
-}
+constexpr std::size_t kLongestSource = std::size_t{16} << 20;
 
 // load(f) and loadstring(s): text only, since compiled Lua could break out of the sandbox.
 int load_text(lua_State* L) {
@@ -192,18 +196,18 @@ int load_text(lua_State* L) {
       std::size_t size = 0;
       const char* piece = lua_tolstring(L, -1, &size);
       if (piece == nullptr || size == 0) break;
-      Sandbox::of(L).charge(L, size);
-      constexpr std::size_t kLongest = std::size_t{16} << 20;
-      if (content.size() + size > kLongest) raise(L, "load() was given more than 16 MiB of text");
+      Sandbox::charge(L, size);
+      if (content.size() + size > kLongestSource) raise(L, "load() was given more than 16 MiB of text");
       content.append(piece, size);
       lua_pop(L, 1);
     }
   } else {
     std::size_t size = 0;
     const char* data = luaL_checklstring(L, 1, &size);
+    if (size > kLongestSource) raise(L, "loadstring() was given more than 16 MiB of text");
     content.assign(data, size);
   }
-  std::string name = luaL_optstring(L, 2, "text");
+  std::string name = shown(luaL_optstring(L, 2, "text"), kLongestName);
   if (!name.empty() && (name.front() == '@' || name.front() == '=')) name.erase(0, 1);
   lua_settop(L, 0);
   if (const auto failure = Sandbox::of(L).load(L, name, content)) {
@@ -218,33 +222,6 @@ int load_text(lua_State* L) {
 int collect_garbage(lua_State* L) {
   lua_pushnumber(L, 0);
   return 1;
-}
-
-// A coroutine shorter than the interval of the hook would run for nothing; making one costs that interval.
-int create_coroutine(lua_State* L) {
-  Sandbox::of(L).charge(L, 1000);
-  lua_pushvalue(L, lua_upvalueindex(1));
-  lua_insert(L, 1);
-  lua_call(L, lua_gettop(L) - 1, 1);
-  return 1;
-}
-
-// table.insert, remove, sort, concat, maxn: Lua's own, after paying for the length of the list.
-int charged_by_length(lua_State* L) {
-  luaL_checktype(L, 1, LUA_TTABLE);
-  const std::size_t length = lua_objlen(L, 1);
-  Sandbox::of(L).charge(L, length < 64 ? 1 : length / 8);
-  lua_pushvalue(L, lua_upvalueindex(1));
-  lua_insert(L, 1);
-  lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
-  return lua_gettop(L);
-}
-
-int sort_table(lua_State* L) {
-  luaL_checktype(L, 1, LUA_TTABLE);
-  const std::uint64_t length = lua_objlen(L, 1);
-  Sandbox::of(L).charge(L, 4 * length * static_cast<std::uint64_t>(std::bit_width(length)));
-  return charged_by_length(L);
 }
 
 int random_number(lua_State* L) {
@@ -286,21 +263,6 @@ int exit_script(lua_State* L) {
   return 0;
 }
 
-void remove_fields(lua_State* L, std::initializer_list<const char*> names) {
-  for (const char* name : names) {
-    lua_pushnil(L);
-    lua_setfield(L, -2, name);
-  }
-}
-
-// Replaces the function `name` of the table on top by F with the former function as its upvalue.
-template <int (*F)(lua_State*)>
-void wrap(lua_State* L, const char* name) {
-  lua_getfield(L, -1, name);
-  lua_pushcclosure(L, guarded<F>, 1);
-  lua_setfield(L, -2, name);
-}
-
 void open(lua_State* L, lua_CFunction library, const char* name) {
   lua_pushcfunction(L, library);
   lua_pushstring(L, name);
@@ -308,52 +270,46 @@ void open(lua_State* L, lua_CFunction library, const char* name) {
 }
 
 void open_base(lua_State* L) {
-  open(L, luaopen_base, "");
   lua_pushvalue(L, LUA_GLOBALSINDEX);
-  lua_getfield(L, -1, "next");
-  lua_setfield(L, LUA_REGISTRYINDEX, "verisim.next");  // the plain one, for pairs
-  remove_fields(L, {"dofile", "loadfile", "newproxy", "gcinfo"});
-  set_function<next_key>(L, "next");
-  set_function<pairs>(L, "pairs");
-  set_function<to_string>(L, "tostring");
-  set_function<print>(L, "print");
-  set_function<call_with_handler>(L, "xpcall");
-  set_function<load_text>(L, "load");
-  set_function<load_text>(L, "loadstring");
-  set_function<collect_garbage>(L, "collectgarbage");
-  lua_pop(L, 1);
-  lua_getglobal(L, "coroutine");
-  wrap<create_coroutine>(L, "create");
-  wrap<create_coroutine>(L, "wrap");
+  set_function<next_key, Charge::call>(L, "next");
+  set_function<pairs, Charge::own>(L, "pairs");
+  set_function<to_string, Charge::call>(L, "tostring");
+  set_function<print, Charge::scene>(L, "print");
+  set_function<load_text, Charge::own>(L, "load");
+  set_function<load_text, Charge::own>(L, "loadstring");
+  set_function<collect_garbage, Charge::call>(L, "collectgarbage");
+  push_function<plain_next, Charge::call>(L);
+  lua_setfield(L, LUA_REGISTRYINDEX, "verisim.next");  // for pairs
   lua_pop(L, 1);
 }
 
 void open_os(lua_State* L) {
   lua_newtable(L);
-  set_function<simulated_clock>(L, "clock");
-  set_function<simulated_seconds>(L, "time");
-  set_function<difference>(L, "difftime");
-  set_function<no_environment>(L, "getenv");
-  set_function<exit_script>(L, "exit");
+  set_function<simulated_clock, Charge::call>(L, "clock");
+  set_function<simulated_seconds, Charge::call>(L, "time");
+  set_function<difference, Charge::call>(L, "difftime");
+  set_function<no_environment, Charge::call>(L, "getenv");
+  set_function<exit_script, Charge::call>(L, "exit");
   lua_setglobal(L, "os");
 }
 
 }  // namespace
 
 void open_library(lua_State* L) {
-  open_base(L);
+  open(L, luaopen_base, "");
   open(L, luaopen_table, LUA_TABLIBNAME);
-  lua_getglobal(L, LUA_TABLIBNAME);
-  remove_fields(L, {"foreach"});  // its order is that of the plain next
-  for (const char* name : {"insert", "remove", "concat", "maxn"}) wrap<charged_by_length>(L, name);
-  wrap<sort_table>(L, "sort");
-  lua_pop(L, 1);
   open(L, luaopen_math, LUA_MATHLIBNAME);
-  lua_getglobal(L, LUA_MATHLIBNAME);
-  set_function<random_number>(L, "random");
-  set_function<seed_random>(L, "randomseed");
-  lua_pop(L, 1);
   open(L, luaopen_string, LUA_STRLIBNAME);
+  keep_declared_functions(L);
+  open_base(L);
+  open_control(L);
+  lua_getglobal(L, LUA_MATHLIBNAME);
+  set_function<random_number, Charge::call>(L, "random");
+  set_function<seed_random, Charge::call>(L, "randomseed");
+  lua_pop(L, 1);
+  lua_getglobal(L, LUA_TABLIBNAME);
+  open_lists(L);
+  lua_pop(L, 1);
   lua_getglobal(L, LUA_STRLIBNAME);
   open_strings(L);
   lua_pop(L, 1);

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "engine/base/error.hpp"
+#include "engine/script/work.hpp"
 
 namespace verisim::script {
 namespace {
@@ -67,31 +68,36 @@ std::ptrdiff_t PatternMatcher::match_at(std::ptrdiff_t start) {
   return match(start, 0);
 }
 
-void PatternMatcher::step() {
-  if (++steps_ > steps_max_)
+void PatternMatcher::step(std::uint64_t steps) {
+  work.used += steps;
+  steps_ += steps;
+  if (steps_ > steps_max_)
     fail(ErrorKind::input,
          "the pattern '{}' takes more than {} steps on a text of {} bytes; make it simpler or the text shorter",
          pattern_.substr(0, 40), steps_max_, subject_.size());
 }
 
 // The item (one character, class or set) at p ends before the returned position.
-std::size_t PatternMatcher::item_end(std::size_t p) const {
+std::size_t PatternMatcher::item_end(std::size_t p) {
   const char first = pattern_[p++];
   if (first == '%') {
     if (p == pattern_.size()) fail(ErrorKind::input, "malformed pattern (ends with '%')");
     return p + 1;
   }
   if (first != '[') return p;
+  const std::size_t begin = p;
   if (p < pattern_.size() && pattern_[p] == '^') ++p;
   do {  // a ']' right at the begin stands for itself
     if (p == pattern_.size()) fail(ErrorKind::input, "malformed pattern (missing ']')");
     if (pattern_[p++] == '%' && p < pattern_.size()) ++p;
   } while (p >= pattern_.size() || pattern_[p] != ']');
+  step((p - begin) / 4);
   return p + 1;
 }
 
 // The set from the '[' at p to the ']' at last.
-bool PatternMatcher::set_matches(unsigned char c, std::size_t p, std::size_t last) const {
+bool PatternMatcher::set_matches(unsigned char c, std::size_t p, std::size_t last) {
+  step((last - p) / 2);
   const bool complement = pattern_[p + 1] == '^';
   for (std::size_t i = complement ? p + 2 : p + 1; i < last; ++i) {
     const auto letter = static_cast<unsigned char>(pattern_[i]);
@@ -249,7 +255,7 @@ std::ptrdiff_t PatternMatcher::match_back_reference(std::ptrdiff_t s, std::size_
   const Capture& capture = captures_[level];
   if (capture.length == kPosition) return kNoMatch;  // a position is no text
   const std::ptrdiff_t length = capture.length;
-  steps_ += static_cast<std::uint64_t>(length) / 8;
+  step(static_cast<std::uint64_t>(length) / 8);
   if (static_cast<std::ptrdiff_t>(subject_.size()) - s < length) return kNoMatch;
   const std::string_view wanted =
       subject_.substr(static_cast<std::size_t>(capture.start), static_cast<std::size_t>(length));

@@ -1,5 +1,6 @@
 // Lua 5.1's patterns with a bound on their work. Lua's own matcher backtracks without an end that a limit could reach
-// (a subject of 64 KiB and four quantifiers take hours); this one counts its steps. Semantics: Lua 5.1 manual, 5.4.1.
+// (a subject of 64 KiB and four quantifiers take hours); this one counts its steps, as work (work.hpp) and against a
+// limit of its own. Semantics: Lua 5.1 manual, 5.4.1.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@ class PatternMatcher {
   static constexpr int kCapturesMax = 32;
   static constexpr int kDepthMax = 200;
 
-  /// `steps_max`: comparisons over the life of this matcher. Both texts must outlive it.
+  /// `steps_max`: comparisons over the life of this matcher; each is a unit of work as well, whatever becomes of the
+  /// match. Both texts must outlive it.
   PatternMatcher(std::string_view subject, std::string_view pattern, std::uint64_t steps_max);
 
   /// Matches the pattern exactly at `start`. Throws Error(input): malformed pattern, too many captures, too many steps.
@@ -44,10 +46,10 @@ class PatternMatcher {
   std::ptrdiff_t match_balanced(std::ptrdiff_t s, std::size_t p);
   std::ptrdiff_t match_frontier(std::ptrdiff_t s, std::size_t p);
   std::ptrdiff_t match_back_reference(std::ptrdiff_t s, std::size_t p);
-  [[nodiscard]] std::size_t item_end(std::size_t p) const;
+  [[nodiscard]] std::size_t item_end(std::size_t p);
   [[nodiscard]] bool item_matches(std::ptrdiff_t s, std::size_t p, std::size_t end);
-  [[nodiscard]] bool set_matches(unsigned char c, std::size_t p, std::size_t last) const;
-  void step();
+  [[nodiscard]] bool set_matches(unsigned char c, std::size_t p, std::size_t last);
+  void step(std::uint64_t steps = 1);
 
   std::string_view subject_;
   std::string_view pattern_;

@@ -66,14 +66,19 @@ Found search(PatternMatcher& matcher, std::string_view subject, std::ptrdiff_t f
 }
 
 int find_plainly(lua_State* L, std::string_view subject, std::string_view wanted, std::ptrdiff_t from) {
-  Sandbox::of(L).charge(L, subject.size() / 8);
-  const std::size_t at = subject.find(wanted, static_cast<std::size_t>(from));
-  if (at == std::string_view::npos) {
+  const std::string_view searched = subject.substr(static_cast<std::size_t>(from));
+  // memmem takes linear time (two-way search), unlike string_view's find.
+  const auto* found = static_cast<const char*>(memmem(searched.data(), searched.size(), wanted.data(), wanted.size()));
+  const std::size_t gone_through =
+      found == nullptr ? searched.size() : static_cast<std::size_t>(found - searched.data());
+  Sandbox::charge(L, gone_through + wanted.size());
+  if (found == nullptr) {
     lua_pushnil(L);
     return 1;
   }
-  lua_pushnumber(L, static_cast<double>(at + 1));
-  lua_pushnumber(L, static_cast<double>(at + wanted.size()));
+  const auto at = static_cast<double>(found - subject.data());
+  lua_pushnumber(L, at + 1);
+  lua_pushnumber(L, at + static_cast<double>(wanted.size()));
   return 2;
 }
 
@@ -81,12 +86,13 @@ int find_or_match(lua_State* L, bool find) {
   const std::string_view subject = string_at(L, 1);
   const std::string_view pattern = string_at(L, 2);
   const std::ptrdiff_t from = start_offset(L, 3, subject.size());
+  Sandbox::charge(L, pattern.size());  // read here and, at worst, in its first step
   const bool plain =
       find && (lua_toboolean(L, 4) != 0 || pattern.find_first_of("^$*+?.([%-") == std::string_view::npos);
   if (plain) return find_plainly(L, subject, pattern, from);
   PatternMatcher matcher(subject, pattern, kStepsMax);
   const Found found = search(matcher, subject, from);
-  Sandbox::of(L).charge(L, matcher.steps());
+  raise_if_spent(L);
   if (!found.any()) {
     lua_pushnil(L);
     return 1;
@@ -112,7 +118,7 @@ int next_match(lua_State* L) {
   PatternMatcher matcher(subject, pattern, kStepsMax);
   if (matcher.anchored()) return 0;  // '^' would make every step begin at the same place
   const Found found = search(matcher, subject, from);
-  Sandbox::of(L).charge(L, matcher.steps());
+  raise_if_spent(L);
   if (!found.any()) return 0;
   lua_pushnumber(L, static_cast<double>(found.end == found.start ? found.end + 1 : found.end));
   lua_replace(L, lua_upvalueindex(3));
@@ -124,7 +130,7 @@ int gmatch(lua_State* L) {
   string_at(L, 2);
   lua_settop(L, 2);
   lua_pushnumber(L, 0);
-  lua_pushcclosure(L, guarded<next_match>, 3);
+  push_function<next_match, Charge::own>(L, 3);
   return 1;
 }
 
@@ -144,6 +150,7 @@ void add_replacement(lua_State* L, std::string& result, std::string_view subject
     lua_gettable(L, 3);
   } else {
     const std::string_view text = string_at(L, 3);
+    Sandbox::charge(L, text.size());
     for (std::size_t i = 0; i < text.size(); ++i) {
       if (text[i] != '%' || i + 1 == text.size()) {
         result += text[i];
@@ -193,10 +200,11 @@ int gsub(lua_State* L) {
     if (end >= 0) {
       ++replaced;
       add_replacement(L, result, subject, matcher, {s, end});
-      Sandbox::of(L).charge(L, (result.size() - std::min(charged, result.size())) / 8);
+      Sandbox::charge(L, (result.size() - std::min(charged, result.size())) / 8);
       charged = result.size();
-      constexpr std::size_t kLongest = std::size_t{64} << 20;
-      if (result.size() > kLongest) raise(L, "string.gsub: the result is longer than 64 MiB");
+      // Not Lua's memory: what a script may hold outside its limit is bounded (64 MB, this text twice while it grows).
+      constexpr std::size_t kLongest = std::size_t{16} << 20;
+      if (result.size() > kLongest) raise(L, "string.gsub: the result is longer than 16 MiB");
     }
     if (end > s)
       s = end;
@@ -207,7 +215,7 @@ int gsub(lua_State* L) {
     if (matcher.anchored()) break;
   }
   if (s < size) result += subject.substr(static_cast<std::size_t>(s));
-  Sandbox::of(L).charge(L, matcher.steps());
+  raise_if_spent(L);
   push_text(L, result);
   lua_pushnumber(L, replaced);
   return 2;
@@ -217,28 +225,31 @@ int repeat(lua_State* L) {
   const std::string_view text = string_at(L, 1);
   const double count = std::max(0.0, std::floor(luaL_checknumber(L, 2)));
   const double size = count * static_cast<double>(text.size());
-  if (!(size <= 0x1p28)) raise(L, "string.rep: the result would be {:.0f} bytes long", size);
+  if (!(size <= 0x1p26)) raise(L, "string.rep: the result would be {:.0f} bytes long", size);
   if (text.empty() || count == 0) {
     lua_pushliteral(L, "");
     return 1;
   }
+  Sandbox::charge(L, static_cast<std::uint64_t>(size) / 16);
   // Built in memory that counts against the limit, then copied once.
-  auto* const buffer = static_cast<char*>(lua_newuserdata(L, static_cast<std::size_t>(size)));
-  for (std::size_t at = 0; at < static_cast<std::size_t>(size); at += text.size())
-    std::memcpy(buffer + at, text.data(), text.size());
-  lua_pushlstring(L, buffer, static_cast<std::size_t>(size));
+  const auto bytes = static_cast<std::size_t>(size);
+  auto* const buffer = static_cast<char*>(lua_newuserdata(L, bytes));
+  std::memcpy(buffer, text.data(), text.size());
+  for (std::size_t filled = text.size(); filled < bytes; filled *= 2)
+    std::memcpy(buffer + filled, buffer, std::min(filled, bytes - filled));
+  lua_pushlstring(L, buffer, bytes);
   return 1;
 }
 
 }  // namespace
 
 void open_strings(lua_State* L) {
-  set_function<find>(L, "find");
-  set_function<match>(L, "match");
-  set_function<gmatch>(L, "gmatch");
-  set_function<gmatch>(L, "gfind");  // its name in Lua 5.0, still there in 5.1
-  set_function<gsub>(L, "gsub");
-  set_function<repeat>(L, "rep");
+  set_function<find, Charge::own>(L, "find");
+  set_function<match, Charge::own>(L, "match");
+  set_function<gmatch, Charge::own>(L, "gmatch");
+  set_function<gmatch, Charge::own>(L, "gfind");  // its name in Lua 5.0, still there in 5.1
+  set_function<gsub, Charge::own>(L, "gsub");
+  set_function<repeat, Charge::own>(L, "rep");
   lua_pushnil(L);
   lua_setfield(L, -2, "dump");  // compiled Lua
 }

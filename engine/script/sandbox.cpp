@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 
 namespace verisim::script {
 namespace {
 
-constexpr int kHookInterval = 1000;        // instructions between two looks at the allowance
-constexpr std::size_t kBytesPerUnit = 64;  // memory moved in about the time of one instruction
+constexpr int kHookInterval = 200;         // instructions between two looks at the allowance
+constexpr std::size_t kBytesPerUnit = 16;  // of memory: to ask for it, fill it, collect it
+constexpr std::uint64_t kBlockWork = 4;
+constexpr std::size_t kBlockOverhead = 24;  // our header and malloc's
+constexpr int kNestedMax = 220;             // library functions within each other; Lua allows 200 in one coroutine
 constexpr std::size_t kMebibyte = std::size_t{1} << 20;
 
 std::string global_suggestion(lua_State* L, const std::string& text) {
@@ -45,14 +50,27 @@ int describe_error(lua_State* L) {
     const std::string kind = luaL_typename(L, 1);
     raise(L, "the script raised an error that is a {}, not a text", kind);
   }
-  const std::string text = lua_tostring(L, 1);
+  const std::string text = shown({lua_tostring(L, 1), lua_objlen(L, 1)});
   const std::string place = where(L);
   const std::string complete = place.empty() || says_where(text) ? text : place + ": " + text;
   lua_pushlstring(L, complete.data(), complete.size());
   return 1;
 }
 
+/// While something has to be said about a script that spent its allowance.
+class Unlimited {
+ public:
+  Unlimited() { work.limit = std::numeric_limits<std::uint64_t>::max(); }
+  ~Unlimited() { work.limit = limit_; }
+  Unlimited(const Unlimited&) = delete;
+  Unlimited& operator=(const Unlimited&) = delete;
+
+ private:
+  std::uint64_t limit_ = work.limit;
+};
+
 int describe_error_safely(lua_State* L) {
+  const Unlimited unlimited;
   std::string text;
   try {
     return describe_error(L);
@@ -64,13 +82,6 @@ int describe_error_safely(lua_State* L) {
 }
 
 }  // namespace
-
-/// Stands before each block that Lua owns. 16 bytes, so that the block stays aligned as malloc aligned it.
-struct Sandbox::BlockHeader {
-  std::uint64_t order;
-  std::uint32_t shown;
-  std::uint32_t unused;
-};
 
 Sandbox::Sandbox(std::string name, std::size_t memory_limit) : name_(std::move(name)), memory_limit_(memory_limit) {
   static_assert(sizeof(BlockHeader) == 16);
@@ -100,23 +111,32 @@ void* Sandbox::allocate(void* sandbox, void* block, std::size_t old_size, std::s
   return static_cast<Sandbox*>(sandbox)->resize(block, old_size, new_size);
 }
 
+namespace {
+std::size_t bytes_taken(std::size_t size) {
+  constexpr std::size_t kGrain = 16;
+  return size == 0 ? 0 : (size + kBlockOverhead + kGrain - 1) / kGrain * kGrain;
+}
+}  // namespace
+
 void* Sandbox::resize(void* block, std::size_t old_size, std::size_t new_size) {
   std::byte* const old_start = block == nullptr ? nullptr : static_cast<std::byte*>(block) - sizeof(BlockHeader);
+  const std::size_t old_bytes = block == nullptr ? 0 : bytes_taken(old_size);
+  const std::size_t new_bytes = bytes_taken(new_size);
   if (new_size == 0) {
     std::free(old_start);
-    memory_used_ -= old_size;
+    memory_used_ -= old_bytes;
     return nullptr;
   }
-  if (new_size > old_size) {
-    work_ += (new_size - old_size) / kBytesPerUnit;  // raised at the next look: an allocator cannot
-    if (memory_used_ + (new_size - old_size) > memory_limit_) {
+  if (new_bytes > old_bytes) {
+    work.used += kBlockWork + (new_bytes - old_bytes) / kBytesPerUnit;
+    if (memory_used_ + (new_bytes - old_bytes) > memory_limit_) {
       if (lua_ != nullptr) memory_where_ = where(lua_);
       return nullptr;
     }
   }
   auto* const start = static_cast<std::byte*>(std::realloc(old_start, new_size + sizeof(BlockHeader)));
   if (start == nullptr) return nullptr;
-  memory_used_ = memory_used_ - old_size + new_size;
+  memory_used_ = memory_used_ - old_bytes + new_bytes;
   if (old_start == nullptr) {
     const BlockHeader header{.order = ++blocks_made_, .shown = 0, .unused = 0};
     std::memcpy(start, &header, sizeof header);
@@ -125,44 +145,69 @@ void* Sandbox::resize(void* block, std::size_t old_size, std::size_t new_size) {
   return newest_block_;
 }
 
-void Sandbox::allow(std::uint64_t work) {
-  work_ = 0;
-  work_limit_ = work;
-  spent_ = false;
+Nesting::Nesting(lua_State* L) : sandbox_(Sandbox::of(L)) {
+  if (sandbox_.nested_ >= kNestedMax)
+    raise(L, "more than {} library functions call each other; look for a recursion that never ends", kNestedMax);
+  ++sandbox_.nested_;
 }
 
-void Sandbox::raise_spent(lua_State* L) {
-  // From now on every instruction of this coroutine raises again, so that a loop around pcall ends as well; its resumer
-  // is caught at its own next look.
-  spent_ = true;
-  lua_sethook(L, &Sandbox::count_hook, LUA_MASKCOUNT, 1);
-  raise(L, "the script has run for {} instructions without coming to an end; look for a loop that never ends",
-        work_limit_);
+/// From the first call of Lua to its return, `work.limit` is what is left of the allowance. Lua's own protection must
+/// stand within: whatever raises because of the limit is caught by it.
+class Sandbox::Running {
+ public:
+  explicit Running(Sandbox& sandbox) : sandbox_(sandbox), begin_(work.used), outer_limit_(work.limit) {
+    if (sandbox_.running_++ == 0) work.limit = begin_ + sandbox_.allowance_left_;
+  }
+  ~Running() {
+    if (--sandbox_.running_ != 0) return;
+    sandbox_.allowance_left_ -= std::min(work.used - begin_, sandbox_.allowance_left_);
+    work.limit = outer_limit_;
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+ private:
+  Sandbox& sandbox_;
+  std::uint64_t begin_;
+  std::uint64_t outer_limit_;
+};
+
+void Sandbox::allow(std::uint64_t units) {
+  VERISIM_ASSERT(units > 0);
+  VERISIM_ASSERT(running_ == 0);
+  allowance_ = allowance_left_ = units;
+}
+
+std::string Sandbox::spent_text() const {
+  return fmt::format(
+      "the script has done {} units of work (instructions) without coming to an end; look for a loop that never ends",
+      allowance_);
+}
+
+void raise_spent(lua_State* L) {
+  const Unlimited unlimited;
+  raise_text(L, Sandbox::of(L).spent_text());
 }
 
 void Sandbox::count_hook(lua_State* L, lua_Debug*) {
-  Sandbox& sandbox = of(L);
-  if (lua_gethookcount(L) != kHookInterval && !sandbox.spent_) {
-    lua_sethook(L, &Sandbox::count_hook, LUA_MASKCOUNT, kHookInterval);  // a former allowance was spent here
-    return;
-  }
-  sandbox.work_ += kHookInterval;
-  if (sandbox.spent_ || sandbox.work_ > sandbox.work_limit_) sandbox.raise_spent(L);
-}
-
-void Sandbox::charge(lua_State* L, std::uint64_t work) {
-  work_ += work;
-  if (spent_ || work_ > work_limit_) raise_spent(L);
+  charge(L, kHookInterval);
 }
 
 std::optional<LuaFailure> Sandbox::load(lua_State* L, const std::string& chunk_name, const std::string& content) {
   if (!content.empty() && content.front() == LUA_SIGNATURE[0])
     return LuaFailure{fmt::format("{}: holds compiled Lua; give the script's text", chunk_name)};
+  longest_source_ = std::max(longest_source_, content.size());
   const std::string source = "@" + chunk_name;
   // A first line "#!…" is for a shell. Kept empty so that line numbers stay true.
   const std::size_t skipped =
       !content.empty() && content.front() == '#' ? std::min(content.find('\n'), content.size()) : 0;
-  const int status = luaL_loadbuffer(L, content.data() + skipped, content.size() - skipped, source.c_str());
+  int status = 0;
+  {
+    const Running running(*this);
+    work.used += work_of_compiling(content.data(), content.size());
+    if (work.used > work.limit) return LuaFailure{fmt::format("{}: {}", chunk_name, spent_text())};
+    status = luaL_loadbuffer(L, content.data() + skipped, content.size() - skipped, source.c_str());
+  }
   if (status != 0) return take_failure(L, status);
   return std::nullopt;
 }
@@ -173,7 +218,11 @@ std::optional<LuaFailure> Sandbox::call(lua_State* L, int arguments, int results
   VERISIM_ASSERT(function >= 1);
   lua_pushcfunction(L, describe_error_safely);
   lua_insert(L, function);
-  const int status = lua_pcall(L, arguments, results, function);
+  int status = 0;
+  {
+    const Running running(*this);
+    status = lua_pcall(L, arguments, results, function);
+  }
   std::optional<LuaFailure> failure;
   if (status != 0) failure = take_failure(L, status);
   lua_remove(L, function);
@@ -182,21 +231,28 @@ std::optional<LuaFailure> Sandbox::call(lua_State* L, int arguments, int results
 
 Sandbox::Resumed Sandbox::resume(lua_State* thread, int arguments, LuaFailure& failure) {
   VERISIM_ASSERT(arguments <= lua_gettop(thread));
-  const int status = lua_resume(thread, arguments);
+  int status = 0;
+  {
+    const Running running(*this);
+    status = lua_resume(thread, arguments);
+  }
   if (status == LUA_YIELD) return Resumed::yielded;
   if (status == 0) return Resumed::ended;
   failure = take_failure(thread, status);
   return Resumed::failed;
 }
 
+std::string Sandbox::memory_text() const {
+  return fmt::format("the script needs more than {} MiB of memory; look for a table or text that grows without end",
+                     memory_limit_ / kMebibyte);
+}
+
 LuaFailure Sandbox::take_failure(lua_State* L, int status) {
   LuaFailure failure;
   if (status == LUA_ERRMEM) {
-    failure.text =
-        fmt::format("{}: the script needs more than {} MiB of memory; look for a table or text that grows without end",
-                    memory_where_.empty() ? name_ : memory_where_, memory_limit_ / kMebibyte);
+    failure.text = fmt::format("{}: {}", memory_where_.empty() ? name_ : memory_where_, memory_text());
   } else if (lua_type(L, -1) == LUA_TSTRING) {
-    failure.text = lua_tostring(L, -1);
+    failure.text = shown({lua_tostring(L, -1), lua_objlen(L, -1)});
   } else {
     failure.text = fmt::format("{}: the script raised an error that is no text", name_);
   }
@@ -206,9 +262,11 @@ LuaFailure Sandbox::take_failure(lua_State* L, int status) {
   return failure;
 }
 
-Sandbox::BlockHeader* Sandbox::header_of(lua_State* L, int index) const {
+BlockHeader* Sandbox::header_of(lua_State* L, int index) const {
   // A table, function or thread is a block; a full userdata's content lies behind its own header in a block.
+  VERISIM_ASSERT(!lua_islightuserdata(L, index));
   auto* block = const_cast<std::byte*>(static_cast<const std::byte*>(lua_topointer(L, index)));
+  VERISIM_ASSERT(block != nullptr);
   if (lua_type(L, index) == LUA_TUSERDATA) block -= userdata_offset_;
   return reinterpret_cast<BlockHeader*>(block - sizeof(BlockHeader));
 }

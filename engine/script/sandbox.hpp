@@ -7,14 +7,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <lua.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/script/work.hpp"
 
 namespace verisim::script {
 
@@ -23,6 +27,9 @@ namespace verisim::script {
 struct LuaFailure {
   std::string text;
 };
+
+/// Of one charge: whatever is computed wrongly, the meter does not go round.
+inline constexpr std::uint64_t kMostAtOnce = std::uint64_t{1} << 48;
 
 class Sandbox {
  public:
@@ -37,10 +44,24 @@ class Sandbox {
   [[nodiscard]] lua_State* lua() const { return lua_; }
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Sets the allowance to `work` units: instructions, and charges of library functions. Clears an exceeded limit.
-  void allow(std::uint64_t work);
-  /// Charges work that is not counted as instructions. Raises a Lua error once the allowance is spent.
-  void charge(lua_State* L, std::uint64_t work);
+  /// Sets the allowance to `units` of work (work.hpp). Clears an exceeded limit. @pre units > 0; no script runs
+  void allow(std::uint64_t units);
+  /// Charges work. Raises a Lua error once the allowance is spent; nothing that a script does can catch that one.
+  static void charge(lua_State* L, std::uint64_t units) {
+    work.used += std::min(units, kMostAtOnce);
+    raise_if_spent(L);
+  }
+  /// Counts bytes that the engine keeps for the script as the script's memory, until let_go. Beyond the limit it is
+  /// Lua's next allocation that fails. A library function that keeps something outside Lua calls it.
+  void keep(std::size_t bytes) {
+    work.used += bytes / 16;
+    memory_used_ += bytes;
+  }
+  void let_go(std::size_t bytes) { memory_used_ -= bytes; }
+  /// Bytes of the longest text that was compiled: an upper bound for the length of a function.
+  [[nodiscard]] std::size_t longest_source() const { return longest_source_; }
+  /// How many coroutines have resumed each other.
+  int& resumed() { return resumed_; }
 
   /// Compiles text (never bytecode) and leaves the function on L's stack; on failure leaves nothing.
   std::optional<LuaFailure> load(lua_State* L, const std::string& chunk_name, const std::string& content);
@@ -51,9 +72,12 @@ class Sandbox {
   enum class Resumed { ended, yielded, failed };
   Resumed resume(lua_State* thread, int arguments, LuaFailure& failure);
 
-  /// Creation number of the object at `index` (table, function, thread, full userdata) among all objects. It replaces
-  /// the address wherever an order or a name is needed.
+  /// Creation number of the object at `index` among all objects. It replaces the address wherever an order or a name is
+  /// needed. @pre there is an object, here and below: a table, function, thread or full userdata
   [[nodiscard]] std::uint64_t creation_order(lua_State* L, int index) const;
+  /// Is `function` one whose work was declared when it was registered (set_function)?
+  [[nodiscard]] bool is_declared(lua_CFunction function) const { return declared_.contains(function); }
+  void declare(lua_CFunction function) { declared_.insert(function); }
   /// A small number for the object, given at the first request: what tostring() shows for its address.
   [[nodiscard]] std::uint32_t shown_number(lua_State* L, int index);
 
@@ -65,11 +89,13 @@ class Sandbox {
   virtual void stop() = 0;                         ///< os.exit
 
  private:
-  struct BlockHeader;
+  friend void script::raise_spent(lua_State* L);
+  class Running;
   static void* allocate(void* sandbox, void* block, std::size_t old_size, std::size_t new_size);
   static void count_hook(lua_State* L, lua_Debug* record);
   void* resize(void* block, std::size_t old_size, std::size_t new_size);
-  [[noreturn]] void raise_spent(lua_State* L);
+  [[nodiscard]] std::string spent_text() const;
+  [[nodiscard]] std::string memory_text() const;
   BlockHeader* header_of(lua_State* L, int index) const;
   LuaFailure take_failure(lua_State* L, int status);
 
@@ -80,11 +106,29 @@ class Sandbox {
   std::uint64_t blocks_made_ = 0;
   std::uint32_t numbers_shown_ = 0;
   void* newest_block_ = nullptr;
-  std::size_t userdata_offset_ = 0;  ///< from a userdata's block to its content; measured, not assumed
-  std::string memory_where_;         ///< FILE:LINE at which memory ran out
-  std::uint64_t work_ = 0;
-  std::uint64_t work_limit_ = 0;
-  bool spent_ = false;
+  std::size_t userdata_offset_ = 0;   ///< from a userdata's block to its content; measured, not assumed
+  std::string memory_where_;          ///< FILE:LINE at which memory ran out
+  std::uint64_t allowance_ = 0;       ///< units
+  std::uint64_t allowance_left_ = 0;  ///< while no script runs
+  int running_ = 0;                   ///< calls of Lua within each other that began here
+  int nested_ = 0;
+  int resumed_ = 0;
+  std::size_t longest_source_ = 0;
+  std::set<lua_CFunction, std::less<>> declared_;
+  friend class Nesting;
+};
+
+/// Counts library functions that run within each other, in all coroutines together: Lua counts each coroutine by
+/// itself, and the processor's stack would overflow. Raises a Lua error when they are too many.
+class Nesting {
+ public:
+  explicit Nesting(lua_State* L);
+  ~Nesting() { --sandbox_.nested_; }
+  Nesting(const Nesting&) = delete;
+  Nesting& operator=(const Nesting&) = delete;
+
+ private:
+  Sandbox& sandbox_;
 };
 
 /// FILE:LINE of the innermost Lua function that is running, or an empty string.
@@ -97,9 +141,18 @@ template <typename... Args>
   raise_text(L, fmt::format(format, std::forward<Args>(args)...));
 }
 
+/// What a library function's call is charged before it begins. No function is registered without one.
+enum class Charge : std::uint32_t {
+  call = 20,    ///< constant work, a few values
+  own = 21,     ///< work that grows with its arguments: the function charges it itself, before or while it works
+  scene = 500,  ///< makes or changes something outside Lua, of constant size
+};
+
 /// Calls F and turns what the engine throws into a Lua error at the line of the script that called it.
-template <int (*F)(lua_State*)>
+template <int (*F)(lua_State*), Charge C>
 int guarded(lua_State* L) {
+  Sandbox::charge(L, static_cast<std::uint32_t>(C));
+  const Nesting nesting(L);
   std::string text;
   try {
     return F(L);
@@ -109,22 +162,33 @@ int guarded(lua_State* L) {
   raise_text(L, text);
 }
 
+/// Pushes F, with as many upvalues as are on top of the stack.
+template <int (*F)(lua_State*), Charge C>
+void push_function(lua_State* L, int upvalues = 0) {
+  Sandbox::of(L).declare(guarded<F, C>);
+  lua_pushcclosure(L, guarded<F, C>, upvalues);
+}
 /// Sets field `name` of the table on top of the stack to the C++ function F.
-template <int (*F)(lua_State*)>
+template <int (*F)(lua_State*), Charge C>
 void set_function(lua_State* L, const char* name) {
-  lua_pushcfunction(L, guarded<F>);
+  push_function<F, C>(L);
   lua_setfield(L, -2, name);
 }
 /// Sets a global to the C++ function F.
-template <int (*F)(lua_State*)>
+template <int (*F)(lua_State*), Charge C>
 void set_global(lua_State* L, const char* name) {
-  lua_pushcfunction(L, guarded<F>);
+  push_function<F, C>(L);
   lua_setglobal(L, name);
 }
 
 /// The standard library, as far as it is harmless and the same in every run (lua_library.cpp).
 void open_library(lua_State* L);
-/// string.* with bounded work (lua_strings.cpp); expects the string table on top of the stack.
+/// Of the libraries that are open: keeps what is declared, removes the rest (lua_own.cpp).
+void keep_declared_functions(lua_State* L);
+/// pcall, xpcall, coroutines, ipairs (lua_control.cpp).
+void open_control(lua_State* L);
+/// Expect the table `string`, `table` on top of the stack (lua_strings.cpp, lua_lists.cpp).
 void open_strings(lua_State* L);
+void open_lists(lua_State* L);
 
 }  // namespace verisim::script

@@ -31,7 +31,6 @@ Scene Scenario::take_scene() {
 
 void Scenario::attach(Simulation& simulation) {
   VERISIM_ASSERT(implementation_->state.scene_taken);
-  VERISIM_ASSERT(implementation_->state.simulation == nullptr);
   implementation_->state.attach(simulation);
 }
 std::string Scenario::parameters_json() const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 #include "engine/script/values.hpp"
 
 namespace verisim::script {
@@ -38,7 +40,9 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
 
 int ScriptState::run_file(lua_State* L, const std::string& file) {
   const int top = lua_gettop(L);
-  if (const auto failure = load(L, file, inputs.read(file))) {
+  const std::string& content = inputs.read(file);
+  charge(L, content.size());
+  if (const auto failure = load(L, file, content)) {
     // The message has the place already; raise_text would put another before it.
     push_text(L, failure->text);
     lua_error(L);
@@ -48,6 +52,8 @@ int ScriptState::run_file(lua_State* L, const std::string& file) {
 }
 
 void ScriptState::finish() {
+  VERISIM_ASSERT(scene.devices.empty() && scene.companions.empty() && scene.grasps.empty());
+  VERISIM_ASSERT(masses.size() == scene.bodies.size());
   check_sets();
   declaring.clear();
   if (options.seed) scene.parameters.seed = *options.seed;
@@ -105,6 +111,7 @@ void ScriptState::bind_devices() {
 }
 
 void ScriptState::add_companion(lua_State* L, std::shared_ptr<CompanionNode> node) {
+  VERISIM_ASSERT(node != nullptr);
   for (const auto& other : companions)
     if (other->name == node->name)
       raise(L, "{}: there is a {} '{}' already; give each a name=", node->word, other->word, node->name);
@@ -121,8 +128,10 @@ bool ScriptState::bind_companion(const std::string& wanted, const std::string& s
 }
 
 void ScriptState::finish_companions() {
-  for (const auto& node : companions)
+  for (const auto& node : companions) {
     scene.companions.push_back(at_place(node->place, [&] { return node->make(inputs, scene.parameters.seed); }));
+    VERISIM_ASSERT(scene.companions.back() != nullptr);
+  }
 }
 
 std::size_t ScriptState::device_index(const DeviceNode& wanted) const {
@@ -133,6 +142,9 @@ std::size_t ScriptState::device_index(const DeviceNode& wanted) const {
 }
 
 void ScriptState::attach(Simulation& running) {
+  VERISIM_ASSERT(simulation == nullptr);
+  VERISIM_ASSERT(running.body_count() == scene.bodies.size());  // words know bodies by their numbers
+  VERISIM_ASSERT(running.dt() == scene.parameters.timestep);
   simulation = &running;
   for (const auto& [kind, text] : early_events_) simulation->add_event(kind, text);
   early_events_.clear();
@@ -146,6 +158,7 @@ void ScriptState::attach(Simulation& running) {
 void ScriptState::frame() {
   std::vector<std::pair<std::string, std::string>> chunks;
   chunks.swap(run_buffer);  // chunks that a chunk adds wait for the next frame
+  for (const auto& [chunk_name, text] : chunks) let_go(kNodeBytes + text.size());
   for (const auto& [chunk_name, text] : chunks) {
     allow(kFrameWork);
     std::optional<LuaFailure> failure = load(lua(), chunk_name, text);
@@ -155,29 +168,36 @@ void ScriptState::frame() {
   actions.update(scene.parameters.frame_rate);
 }
 
-void ScriptState::notice(const std::string& text) {
+void ScriptState::notice(const std::string& whole_text) {
+  std::string text = shown(whole_text);
+  if (notices.size() >= kNoticesMax)
+    text = fmt::format("{}: more than {} notices; the rest is left out", name(), kNoticesMax);
   if (!told_.insert(text).second) return;
   notices.push_back(text);
   if (simulation != nullptr) event("warning", text);  // before that, whoever reads notices() writes the events
 }
 
 void ScriptState::event(const std::string& kind, const std::string& whole_text) {
-  constexpr std::size_t kLongest = 1000;  // the run file keeps less; a script may say anything
-  const std::string text = whole_text.substr(0, kLongest);
-  if (simulation != nullptr)
+  VERISIM_ASSERT(!kind.empty());
+  const std::string text = shown(whole_text);  // the run file keeps less; a script may say anything
+  if (simulation != nullptr) {
     simulation->add_event(kind, text);
-  else
-    early_events_.emplace_back(kind, text);
+    return;
+  }
+  if (early_events_.size() >= kEarlyEventsMax)
+    fail(ErrorKind::input, "{}: more than {} events while the scene is built; look for a loop that never ends", name(),
+         kEarlyEventsMax);
+  early_events_.emplace_back(kind, text);
 }
 
 void ScriptState::report_failure(const std::string& what, const LuaFailure& failure) {
   event("script error", fmt::format("{} ({})", failure.text, what));
-  std::fprintf(stderr, "%s: %s (%s; the simulation goes on)\n", "warning", failure.text.c_str(), what.c_str());
+  std::fprintf(stderr, "%s: %s (%s; the simulation goes on)\n", "warning", shown(failure.text).c_str(), what.c_str());
 }
 
 void ScriptState::print(const std::string& line) {
   event("print", line);
-  std::fprintf(stderr, "%s\n", line.c_str());
+  std::fprintf(stderr, "%s\n", shown_lines(line).c_str());
 }
 
 double ScriptState::random() {

@@ -27,6 +27,12 @@ inline constexpr std::uint64_t kFrameWork = 10'000'000;
 
 /// Work units for a line of /events, which is stored outside Lua's memory.
 inline constexpr std::uint64_t kEventWork = 500;
+/// What a small object that the engine keeps for the script takes at most, bytes.
+inline constexpr std::size_t kNodeBytes = 512;
+/// Most lines of /events before the simulation runs, most different notices, most measures.
+inline constexpr std::size_t kEarlyEventsMax = 20'000;
+inline constexpr std::size_t kNoticesMax = 1000;
+inline constexpr std::size_t kMeasuresMax = 1000;
 /// Largest number of frame actions at one time.
 inline constexpr std::size_t kActionsMax = 1000;
 
@@ -55,16 +61,19 @@ class ScriptState : public Sandbox {
   /// Runs a file of the scenario on L and leaves its results. Error(input): no such file. Lua errors pass through.
   int run_file(lua_State* L, const std::string& name);
   /// Once, after the script: unknown --set keys, --bind, devices, grasps; completes `scene`. Error(input).
+  /// @pre not called before
   void finish();
+  /// @pre the simulation is of `scene`; not attached before
   void attach(Simulation& simulation);
 
   /// Records a warning or an ignored option once, for stderr (by the caller of Scenario::notices) and /events.
   void notice(const std::string& text);
+  /// @pre the kind is not empty
   void event(const std::string& kind, const std::string& text);
   /// Runs one piece of the running scene's script; a failure becomes an event and the simulation goes on.
   void report_failure(const std::string& what, const LuaFailure& failure);
 
-  /// The description of a body while the scene is built.
+  /// The description of a body while the scene is built. @pre it is one of scene.bodies
   [[nodiscard]] BodyDescription& described_body(std::size_t body) {
     VERISIM_ASSERT(body < scene.bodies.size());
     return scene.bodies[body];
@@ -103,7 +112,7 @@ class ScriptState : public Sandbox {
   std::vector<double> masses;                  ///< of described bodies, kg
   std::map<std::size_t, Declaring> declaring;  ///< bodies whose voxels the script goes through; until finish()
 
-  /// Raises if a companion of that name is there.
+  /// Raises if a companion of that name is there. @pre it is not null
   void add_companion(lua_State* L, std::shared_ptr<CompanionNode> node);
   /// Index in scene.devices of the chain that `node` is part of. Error(input) if it was never added.
   [[nodiscard]] std::size_t device_index(const DeviceNode& node) const;

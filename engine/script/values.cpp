@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
+
 namespace verisim::script {
 
 std::string described(lua_State* L, int index) {
@@ -15,7 +18,7 @@ std::string described(lua_State* L, int index) {
     case LUA_TNUMBER:
       return fmt::format("{:g}", lua_tonumber(L, index));
     case LUA_TSTRING:
-      return fmt::format("a text ('{}')", std::string(lua_tostring(L, index)).substr(0, 40));
+      return fmt::format("a text ('{}')", shown({lua_tostring(L, index), lua_objlen(L, index)}, 40));
     default:
       break;
   }
@@ -35,11 +38,35 @@ double number_at(lua_State* L, int index, const std::string& what) {
   return value;
 }
 
-std::string text_at(lua_State* L, int index, const std::string& what) {
+namespace {
+
+std::string_view bytes_at(lua_State* L, int index, const std::string& what, std::size_t longest) {
   if (lua_type(L, index) != LUA_TSTRING) raise(L, "{} must be a text, not {}", what, described(L, index));
   std::size_t size = 0;
   const char* data = lua_tolstring(L, index, &size);
+  if (size > longest) raise(L, "{} is {} bytes long; {} are allowed", what, size, longest);
+  Sandbox::charge(L, size);
   return {data, size};
+}
+
+}  // namespace
+
+std::string text_at(lua_State* L, int index, const std::string& what) {
+  const std::string_view text = bytes_at(L, index, what, kLongestLine);
+  const std::string fault = line_fault(text);
+  if (!fault.empty()) raise(L, "{} {}: '{}'", what, fault, shown(text, 40));
+  return std::string(text);
+}
+
+std::string name_at(lua_State* L, int index, const std::string& what) {
+  const std::string_view text = bytes_at(L, index, what, kLongestText);
+  const std::string fault = name_fault(text);
+  if (!fault.empty()) raise(L, "{} {}: '{}'", what, fault, shown(text, 40));
+  return std::string(text);
+}
+
+std::string any_text_at(lua_State* L, int index, const std::string& what) {
+  return std::string(bytes_at(L, index, what, kLongestText));
 }
 
 bool boolean_at(lua_State* L, int index, const std::string& what) {
@@ -103,6 +130,8 @@ std::string suggestion(const std::string& name, std::vector<std::string> known) 
 }
 
 Fields::Fields(lua_State* L, int index, std::string word) : L_(L), index_(index), word_(std::move(word)) {
+  VERISIM_ASSERT(index > 0);  // reading a field moves the top
+  VERISIM_ASSERT(!word_.empty());
   if (lua_type(L, index) != LUA_TTABLE)
     raise(L, "{0} is called with {1}; call it with a table: {0}{{ … }}", word_, described(L, index));
 }
@@ -141,6 +170,13 @@ std::optional<std::string> Fields::text(const char* name) {
   return value;
 }
 
+std::optional<std::string> Fields::name() {
+  if (!push("name")) return std::nullopt;
+  std::string value = name_at(L_, -1, name_of("name"));
+  lua_pop(L_, 1);
+  return value;
+}
+
 std::optional<bool> Fields::boolean(const char* name) {
   if (!push(name)) return std::nullopt;
   const bool value = boolean_at(L_, -1, name_of(name));
@@ -163,6 +199,7 @@ std::optional<Quaterniond> Fields::rotation(const char* name) {
 }
 
 void Fields::finish(bool children_allowed) {
+  constexpr std::size_t kUnknownMax = 100;
   std::vector<std::string> unknown;
   for (lua_pushnil(L_); lua_next(L_, index_) != 0; lua_pop(L_, 1)) {
     if (lua_type(L_, -2) == LUA_TNUMBER) {
@@ -170,12 +207,13 @@ void Fields::finish(bool children_allowed) {
     } else if (lua_type(L_, -2) != LUA_TSTRING) {
       raise(L_, "{} has a key that is a {}; keys are names", word_, luaL_typename(L_, -2));
     } else if (std::find(known_.begin(), known_.end(), lua_tostring(L_, -2)) == known_.end()) {
-      unknown.emplace_back(lua_tostring(L_, -2));
+      if (unknown.size() < kUnknownMax)
+        unknown.emplace_back(lua_tostring(L_, -2), std::min(lua_objlen(L_, -2), kLongestLine));
     }
   }
   if (unknown.empty()) return;
   std::sort(unknown.begin(), unknown.end());
-  raise(L_, "{} has no '{}'{}", word_, unknown.front(), suggestion(unknown.front(), known_));
+  raise(L_, "{} has no '{}'{}", word_, shown(unknown.front(), 40), suggestion(unknown.front(), known_));
 }
 
 }  // namespace verisim::script

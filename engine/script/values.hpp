@@ -10,10 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/base/pose.hpp"
 #include "engine/script/sandbox.hpp"
 
 namespace verisim::script {
+
+inline constexpr std::size_t kLongestLine = 4096;
+inline constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
 /// osg.Matrix: 4 x 4, rows act on row vectors from the left (v * M), as OpenSceneGraph has it.
 using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
@@ -68,6 +72,7 @@ int destroy(lua_State* L) {
 /// Leaves the metatable of T on the stack; makes it at first use. Scripts cannot get at it.
 template <typename T>
 void push_metatable(lua_State* L) {
+  static_assert(kTypeName<T> != nullptr, "a type that scripts hold has a name");
   if (luaL_newmetatable(L, kTypeName<T>) == 0) return;
   lua_pushstring(L, kTypeName<T>);
   lua_setfield(L, -2, "__metatable");
@@ -112,7 +117,13 @@ T& get(lua_State* L, int index, const std::string& what) {
 }
 
 [[nodiscard]] double number_at(lua_State* L, int index, const std::string& what);  ///< finite
+/// One line of UTF-8 of at most kLongestLine bytes without control characters (engine/base/text.hpp): what a word is
+/// given may end in the run file, in JSON or on the terminal.
 [[nodiscard]] std::string text_at(lua_State* L, int index, const std::string& what);
+/// The same, of at most kLongestName bytes: what names something.
+[[nodiscard]] std::string name_at(lua_State* L, int index, const std::string& what);
+/// Any bytes, of at most kLongestText: code, or what is said and then made harmless (shown).
+[[nodiscard]] std::string any_text_at(lua_State* L, int index, const std::string& what);
 [[nodiscard]] bool boolean_at(lua_State* L, int index, const std::string& what);
 [[nodiscard]] Vector3d vector_at(lua_State* L, int index, const std::string& what);  ///< osg.Vec3 or {x, y, z}
 [[nodiscard]] Quaterniond rotation_at(lua_State* L, int index,
@@ -129,7 +140,7 @@ int no_effect(lua_State* L);
 /// rest.
 class Fields {
  public:
-  /// Raises if there is no table at `index`.
+  /// Raises if there is no table at `index`. @pre index counts from the bottom of the stack, and word is not empty
   Fields(lua_State* L, int index, std::string word);
 
   [[nodiscard]] std::optional<double> number(const char* name);
@@ -137,6 +148,8 @@ class Fields {
   /// A number that must be above zero.
   [[nodiscard]] std::optional<double> positive(const char* name);
   [[nodiscard]] std::optional<std::string> text(const char* name);
+  /// The field "name".
+  [[nodiscard]] std::optional<std::string> name();
   [[nodiscard]] std::optional<bool> boolean(const char* name);
   [[nodiscard]] std::optional<Vector3d> vector(const char* name);
   [[nodiscard]] std::optional<Quaterniond> rotation(const char* name);
@@ -147,7 +160,11 @@ class Fields {
 
   /// Entries without a name: 1 … n.
   [[nodiscard]] int children() const { return static_cast<int>(lua_objlen(L_, index_)); }
-  void push_child(int i) { lua_rawgeti(L_, index_, i); }
+  /// Leaves the entry, or nil beyond the last, on the stack. @pre i > 0
+  void push_child(int i) {
+    VERISIM_ASSERT(i > 0);
+    lua_rawgeti(L_, index_, i);
+  }
   [[nodiscard]] std::string name_of(const char* field) const { return word_ + ": " + field; }
 
   /// Raises for a field that no read has named: "addObject has no 'densty'; did you mean 'density'? (…)".

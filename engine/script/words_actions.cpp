@@ -53,8 +53,8 @@ int update_frame_actions(lua_State*) {
 
 int add_string(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  state.run_buffer.emplace_back("runbuf", text_at(L, 2, "runbuf:addString: the code"));
-  Sandbox::of(L).charge(L, 100 + state.run_buffer.back().second.size());
+  state.run_buffer.emplace_back("runbuf", any_text_at(L, 2, "runbuf:addString: the code"));
+  state.keep(kNodeBytes + state.run_buffer.back().second.size());
   lua_pushboolean(L, 1);
   return 1;
 }
@@ -63,7 +63,7 @@ int add_file(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   const std::string name = text_at(L, 2, "runbuf:addFile: the file");
   state.run_buffer.emplace_back(name, state.inputs.read(name));
-  Sandbox::of(L).charge(L, 100 + state.run_buffer.back().second.size());
+  state.keep(kNodeBytes + state.run_buffer.back().second.size());
   lua_pushboolean(L, 1);
   return 1;
 }
@@ -72,17 +72,17 @@ int add_file(lua_State* L) {
 
 void add_action_words(lua_State* L) {
   lua_newtable(L);
-  set_function<add_frame_action>(L, "addFrameAction");
-  set_function<remove_frame_action>(L, "removeFrameAction");
-  set_function<wait_for_redraw>(L, "waitForRedraw");
-  set_function<wait_seconds>(L, "waitSeconds");
-  set_function<update_frame_actions>(L, "updateFrameActions");
+  set_function<add_frame_action, Charge::call>(L, "addFrameAction");
+  set_function<remove_frame_action, Charge::call>(L, "removeFrameAction");
+  set_function<wait_for_redraw, Charge::call>(L, "waitForRedraw");
+  set_function<wait_seconds, Charge::call>(L, "waitSeconds");
+  set_function<update_frame_actions, Charge::call>(L, "updateFrameActions");
   lua_setglobal(L, "Actions");
   lua_newtable(L);
-  set_function<add_string>(L, "addString");
-  set_function<add_file>(L, "addFile");
-  set_function<no_effect>(L, "init");
-  set_function<no_effect>(L, "runBuffer");
+  set_function<add_string, Charge::call>(L, "addString");
+  set_function<add_file, Charge::call>(L, "addFile");
+  set_function<no_effect, Charge::call>(L, "init");
+  set_function<no_effect, Charge::call>(L, "runBuffer");
   lua_setglobal(L, "runbuf");
 }
 

@@ -199,19 +199,19 @@ int pose_member(lua_State* L) {
 
 void add_body_words(lua_State* L) {
   push_metatable<BodyHandle>(L);
-  set_function<body_text>(L, "__tostring");
-  set_function<same_body>(L, "__eq");
-  set_function<set_body_member>(L, "__newindex");
+  set_function<body_text, Charge::call>(L, "__tostring");
+  set_function<same_body, Charge::call>(L, "__eq");
+  set_function<set_body_member, Charge::call>(L, "__newindex");
   lua_newtable(L);
-  set_function<set_position>(L, "setPosition");
-  set_function<set_orientation>(L, "setOrientation");
-  set_function<set_hybrid_enabled>(L, "setHybridEnabled");
+  set_function<set_position, Charge::call>(L, "setPosition");
+  set_function<set_orientation, Charge::call>(L, "setOrientation");
+  set_function<set_hybrid_enabled, Charge::call>(L, "setHybridEnabled");
   add_declaring_methods(L);
-  lua_pushcclosure(L, guarded<body_member>, 1);
+  push_function<body_member, Charge::call>(L, 1);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
   push_metatable<Pose>(L);
-  set_function<pose_member>(L, "__index");
+  set_function<pose_member, Charge::call>(L, "__index");
   lua_pop(L, 1);
 }
 

@@ -112,7 +112,7 @@ int make_shape(lua_State* L) {
   const std::string name = kKinds[kind].name;
   if (name != "Sphere" || lua_type(L, 1) != LUA_TTABLE)
     raise(L, "{} is called with {}; call it with nothing and set its fields then", name, described(L, 1));
-  ScriptState::of(L).charge(L, kEventWork);
+  Sandbox::charge(L, kEventWork);
   ScriptState::of(L).notice(fmt::format("{}: Sphere{{…}} only draws and is ignored", where(L)));
   lua_getfield(L, LUA_REGISTRYINDEX, "verisim.drawing");
   return 1;
@@ -178,7 +178,8 @@ int insert(lua_State* L) {
   const auto& shape = get<DeclaredShape>(L, 2, "insert: the feature");
   if (set.entities.size() == kSetEntitiesMax)
     raise(L, "insert: a FeatureSet has room for {} features; one voxel holds few", kSetEntitiesMax);
-  ScriptState::of(L).charge(L, kEventWork);  // it is kept outside Lua's memory
+  Sandbox::charge(L, kEventWork);
+  Sandbox::of(L).keep(sizeof(set.entities.front()));
   set.entities.push_back(entity_of_shape(L, shape));
   return 0;
 }
@@ -217,7 +218,7 @@ const Declaring& voxels_of(lua_State* L, std::size_t body, const char* word) {
   if (known != state.declaring.end()) return known->second;
   Declaring voxels(state.described_body(body));
   // Charged as work, because voxels lie outside Lua's memory: a loop must not fill the machine with them.
-  state.charge(L, voxels.memory_bytes() / 4);
+  Sandbox::charge(L, voxels.memory_bytes() / 4);
   return state.declaring.emplace(body, std::move(voxels)).first->second;
 }
 
@@ -246,7 +247,7 @@ int add_feature_set(lua_State* L) {
   else
     p = vector_at(L, 3, "addFeatureSet: the place");
   BodyDescription& description = state.described_body(body);
-  state.charge(L, 20);
+  Sandbox::charge(L, 20);
   lua_pushnumber(L, voxels.give(description, p, set.entities));
   return 1;
 }
@@ -264,28 +265,28 @@ int get_feature_set(lua_State* L) {
 }  // namespace
 
 void add_declaring_methods(lua_State* L) {
-  set_function<foreach_surface_voxel>(L, "foreachSurfaceVoxel");
-  set_function<add_feature_set>(L, "addFeatureSet");
-  set_function<get_feature_set>(L, "getFeatureSet");
+  set_function<foreach_surface_voxel, Charge::call>(L, "foreachSurfaceVoxel");
+  set_function<add_feature_set, Charge::call>(L, "addFeatureSet");
+  set_function<get_feature_set, Charge::call>(L, "getFeatureSet");
 }
 
 void add_brep_words(lua_State* L) {
   push_metatable<DeclaredShape>(L);
-  set_function<shape_member>(L, "__index");
-  set_function<set_shape_member>(L, "__newindex");
+  set_function<shape_member, Charge::call>(L, "__index");
+  set_function<set_shape_member, Charge::call>(L, "__newindex");
   lua_pop(L, 1);
   push_metatable<DeclaredSet>(L);
-  lua_pushcfunction(L, guarded<insert>);
-  lua_pushcclosure(L, guarded<set_member>, 1);
+  push_function<insert, Charge::call>(L);
+  push_function<set_member, Charge::call>(L, 1);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
   for (std::size_t i = 0; i < std::size(kKinds); ++i) {
     lua_pushinteger(L, static_cast<lua_Integer>(i));
-    lua_pushcclosure(L, guarded<make_shape>, 1);
+    push_function<make_shape, Charge::call>(L, 1);
     lua_setglobal(L, kKinds[i].name);
   }
-  set_global<feature_set>(L, "FeatureSet");
-  set_global<boundary_feature>(L, "BoundaryFeature");
+  set_global<feature_set, Charge::call>(L, "FeatureSet");
+  set_global<boundary_feature, Charge::call>(L, "BoundaryFeature");
 }
 
 }  // namespace verisim::script

@@ -184,7 +184,7 @@ int add_device(lua_State* L) {
   check_building(L, "addDevice");
   ScriptState& state = ScriptState::of(L);
   DevicePointer device = device_at(L, 1, "addDevice: the device");
-  state.charge(L, 1000 + 100 * state.devices.size());
+  Sandbox::charge(L, 1000 + 100 * state.devices.size());
   for (const DevicePointer& known : state.devices)
     for (const DeviceNode* a = known.get(); a != nullptr; a = a->inner.get())
       for (const DeviceNode* b = device.get(); b != nullptr; b = b->inner.get())
@@ -253,7 +253,7 @@ int device_member(lua_State* L) {
   else if (name == "torques")
     push(L, Vector3d(rendered.torque));
   else if (name == "getButtonState")
-    lua_pushcfunction(L, guarded<button_state>);
+    push_function<button_state, Charge::call>(L);
   else
     raise(L, "a device has no '{}'{}", name,
           suggestion(name, {"name", "handle", "pose", "raw", "position", "orientation", "matrix", "forces", "torques",
@@ -270,27 +270,27 @@ int device_text(lua_State* L) {
 
 void add_device_words(lua_State* L) {
   push_metatable<DevicePointer>(L);
-  set_function<device_member>(L, "__index");
-  set_function<device_text>(L, "__tostring");
+  set_function<device_member, Charge::call>(L, "__index");
+  set_function<device_text, Charge::call>(L, "__tostring");
   lua_pop(L, 1);
   lua_newtable(L);
   lua_newtable(L);
-  set_function<phantom>(L, "PhantomOmni");
+  set_function<phantom, Charge::call>(L, "PhantomOmni");
   lua_setfield(L, -2, "Sensable");
   lua_newtable(L);
-  set_function<virtuose>(L, "Virtuose6D3545");
+  set_function<virtuose, Charge::call>(L, "Virtuose6D3545");
   lua_setfield(L, -2, "Haption");
-  set_function<replay>(L, "Replay");
-  set_function<hand_device>(L, "Hand");
+  set_function<replay, Charge::call>(L, "Replay");
+  set_function<hand_device, Charge::call>(L, "Hand");
   lua_setglobal(L, "Devices");
-  set_global<translate_device>(L, "translateDevice");
-  set_global<scale_device>(L, "scaleDevice");
-  set_global<add_device>(L, "addDevice");
-  set_global<grasp>(L, "grasp");
-  set_global<release>(L, "release");
+  set_global<translate_device, Charge::call>(L, "translateDevice");
+  set_global<scale_device, Charge::call>(L, "scaleDevice");
+  set_global<add_device, Charge::call>(L, "addDevice");
+  set_global<grasp, Charge::call>(L, "grasp");
+  set_global<release, Charge::call>(L, "release");
   // SPARTA's words before its version 3.
-  set_global<translate_device>(L, "translateManipulator");
-  set_global<add_device>(L, "addManipulator");
+  set_global<translate_device, Charge::call>(L, "translateManipulator");
+  set_global<add_device, Charge::call>(L, "addManipulator");
 }
 
 }  // namespace verisim::script

@@ -32,6 +32,7 @@ std::string calling_script(lua_State* L, int depth) {
   lua_Debug record;
   for (int level = 1; lua_getstack(L, level, &record) != 0; ++level) {
     lua_getinfo(L, "S", &record);
+    Sandbox::charge(L, 10 + static_cast<std::uint64_t>(level));  // each level is counted from the first
     if (record.source[0] == '@' && depth-- <= 0) return record.source + 1;
   }
   return Sandbox::of(L).name();
@@ -43,9 +44,13 @@ int get_script_filename(lua_State* L) {
   return 1;
 }
 
+constexpr std::size_t kFoldersMax = 100;  // each look-up goes through all
+
 void append_folder(ScriptState& state, const std::string& folder) {
   auto& path = state.search_path;
-  if (std::find(path.begin(), path.end(), folder) == path.end()) path.push_back(folder);
+  if (std::find(path.begin(), path.end(), folder) != path.end()) return;
+  if (path.size() >= kFoldersMax) fail(ErrorKind::input, "the model search path has {} folders already", kFoldersMax);
+  path.push_back(folder);
 }
 
 // A file's name stands for its folder, as VR JuggLua has it.
@@ -133,17 +138,17 @@ int help(lua_State* L) {
 void add_file_words(lua_State* L) {
   lua_newtable(L);
   lua_setfield(L, LUA_REGISTRYINDEX, "verisim.modules");
-  set_global<require_module>(L, "require");
-  set_global<do_file>(L, "dofile");
-  set_global<run_named_file>(L, "runfile");
-  set_global<add_app_directory>(L, "AddAppDirectory");
-  set_global<get_script_filename>(L, "getScriptFilename");
-  set_global<help>(L, "help");
+  set_global<require_module, Charge::call>(L, "require");
+  set_global<do_file, Charge::call>(L, "dofile");
+  set_global<run_named_file, Charge::call>(L, "runfile");
+  set_global<add_app_directory, Charge::call>(L, "AddAppDirectory");
+  set_global<get_script_filename, Charge::call>(L, "getScriptFilename");
+  set_global<help, Charge::call>(L, "help");
   lua_newtable(L);
-  set_function<append_to_search_path>(L, "appendToModelSearchPath");
-  set_function<search_path>(L, "getModelSearchPath");
-  set_function<find_in_search_path>(L, "findInModelSearchPath");
-  set_function<no_effect>(L, "appendToLuaRequirePath");
+  set_function<append_to_search_path, Charge::call>(L, "appendToModelSearchPath");
+  set_function<search_path, Charge::call>(L, "getModelSearchPath");
+  set_function<find_in_search_path, Charge::call>(L, "findInModelSearchPath");
+  set_function<no_effect, Charge::call>(L, "appendToLuaRequirePath");
   lua_getglobal(L, "print");
   lua_setfield(L, -2, "safePrint");
   lua_setglobal(L, "vrjLua");

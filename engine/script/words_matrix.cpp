@@ -183,8 +183,8 @@ int matrices_equal(lua_State* L) {
   return 1;
 }
 
-int called(lua_State* L) {  // osg.Matrix(…): the table of static functions is called
-  lua_remove(L, 1);
+int called(lua_State* L) {                  // osg.Matrix(…): the table of static functions is called
+  if (lua_gettop(L) > 0) lua_remove(L, 1);  // its metamethod can be called without anything
   return make_matrix(L);
 }
 
@@ -206,36 +206,36 @@ Pose pose_of_matrix(lua_State* L, const Matrix& matrix, const std::string& what)
 
 void add_matrix_words(lua_State* L) {
   push_metatable<Matrix>(L);
-  set_function<multiply>(L, "__mul");
-  set_function<element>(L, "__call");
-  set_function<matrices_equal>(L, "__eq");
-  set_function<matrix_text>(L, "__tostring");
+  set_function<multiply, Charge::call>(L, "__mul");
+  set_function<element, Charge::call>(L, "__call");
+  set_function<matrices_equal, Charge::call>(L, "__eq");
+  set_function<matrix_text, Charge::call>(L, "__tostring");
   lua_newtable(L);
-  set_function<make_translate>(L, "makeTranslate");
-  set_function<make_rotate>(L, "makeRotate");
-  set_function<make_scale>(L, "makeScale");
-  set_function<make_identity>(L, "makeIdentity");
-  set_function<set_translation>(L, "setTrans");
-  set_function<get_translation>(L, "getTrans");
-  set_function<get_rotation>(L, "getRotate");
-  set_function<get_scale>(L, "getScale");
-  set_function<pre_multiply>(L, "preMult");
-  set_function<post_multiply>(L, "postMult");
-  set_function<set_product>(L, "mult");
-  set_function<inverse>(L, "inverse");
-  set_function<invert>(L, "invert");
+  set_function<make_translate, Charge::call>(L, "makeTranslate");
+  set_function<make_rotate, Charge::call>(L, "makeRotate");
+  set_function<make_scale, Charge::call>(L, "makeScale");
+  set_function<make_identity, Charge::call>(L, "makeIdentity");
+  set_function<set_translation, Charge::call>(L, "setTrans");
+  set_function<get_translation, Charge::call>(L, "getTrans");
+  set_function<get_rotation, Charge::call>(L, "getRotate");
+  set_function<get_scale, Charge::call>(L, "getScale");
+  set_function<pre_multiply, Charge::call>(L, "preMult");
+  set_function<post_multiply, Charge::call>(L, "postMult");
+  set_function<set_product, Charge::call>(L, "mult");
+  set_function<inverse, Charge::call>(L, "inverse");
+  set_function<invert, Charge::call>(L, "invert");
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
 
   lua_getglobal(L, "osg");
   for (const char* name : {"Matrix", "Matrixd", "Matrixf"}) {
     lua_newtable(L);
-    set_function<identity>(L, "identity");
-    set_function<translate>(L, "translate");
-    set_function<rotate>(L, "rotate");
-    set_function<scale>(L, "scale");
+    set_function<identity, Charge::call>(L, "identity");
+    set_function<translate, Charge::call>(L, "translate");
+    set_function<rotate, Charge::call>(L, "rotate");
+    set_function<scale, Charge::call>(L, "scale");
     lua_newtable(L);
-    set_function<called>(L, "__call");
+    set_function<called, Charge::call>(L, "__call");
     lua_setmetatable(L, -2);
     lua_setfield(L, -2, name);
   }

@@ -55,6 +55,7 @@ std::string find_model(lua_State* L, const std::string& given) {
 }
 
 NodePointer model_node(lua_State* L) {
+  Sandbox::of(L).keep(2 * kNodeBytes);
   auto node = std::make_shared<Node>();
   node->kind = Node::Kind::model;
   std::string file;
@@ -136,6 +137,8 @@ int model_parts(lua_State* L) {
 }
 
 void add_children(lua_State* L, Fields& fields, Node& group, const std::string& word) {
+  Sandbox::charge(L, kEventWork + 20 * static_cast<std::uint64_t>(fields.children()));
+  Sandbox::of(L).keep(kNodeBytes + 32 * static_cast<std::size_t>(fields.children()));
   for (int i = 1; i <= fields.children(); ++i) {
     fields.push_child(i);
     // A child that only draws (a light, a text) has no part in a body.
@@ -198,7 +201,8 @@ int matrix_transform(lua_State* L) {
 int push_solid(lua_State* L, Solid solid, int pieces = 1) {
   if (pieces > kSolidPiecesMax)
     raise(L, "the solid is made of more than {} pieces; make it from fewer", kSolidPiecesMax);
-  Sandbox::of(L).charge(L, 100 + 10 * static_cast<std::uint64_t>(pieces));
+  Sandbox::charge(L, 100 + 10 * static_cast<std::uint64_t>(pieces));
+  Sandbox::of(L).keep(2 * kNodeBytes);
   check(solid);
   auto node = std::make_shared<Node>();
   node->kind = Node::Kind::solid;
@@ -288,8 +292,9 @@ int add_child(lua_State* L) {
   const NodePointer group_node = get<NodePointer>(L, 1, "what :addChild adds to");
   if (group_node->kind != Node::Kind::group) raise(L, "addChild: only a Group or Transform has children");
   const NodePointer child = get<NodePointer>(L, 2, "addChild: the child");
-  if (hangs_below(*child, *group_node, [&] { Sandbox::of(L).charge(L, 10); }))
+  if (hangs_below(*child, *group_node, [&] { Sandbox::charge(L, 10); }))
     raise(L, "addChild: the group hangs below what is to be its child; nothing can hold itself");
+  Sandbox::of(L).keep(2 * sizeof child);
   group_node->children.push_back(child);
   return 0;
 }
@@ -299,7 +304,7 @@ int node_member(lua_State* L) {
   const std::string name = text_at(L, 2, "a node's member");
   lua_getfield(L, lua_upvalueindex(1), name.c_str());
   if (!lua_isnil(L, -1)) return 1;
-  ScriptState::of(L).charge(L, kEventWork);
+  Sandbox::charge(L, kEventWork);
   ScriptState::of(L).notice(fmt::format("{}: node:{} only draws and is ignored", where(L), name));
   lua_getfield(L, LUA_REGISTRYINDEX, "verisim.drawing");
   return 1;
@@ -309,28 +314,28 @@ int node_member(lua_State* L) {
 
 void add_node_words(lua_State* L) {
   push_metatable<NodePointer>(L);
-  set_function<subtract>(L, "__sub");
-  set_function<add>(L, "__add");
-  set_function<intersect>(L, "__mul");
+  set_function<subtract, Charge::call>(L, "__sub");
+  set_function<add, Charge::call>(L, "__add");
+  set_function<intersect, Charge::call>(L, "__mul");
   lua_newtable(L);
-  set_function<node_translate>(L, "translate");
-  set_function<node_rotate>(L, "rotate");
-  set_function<add_child>(L, "addChild");
-  lua_pushcclosure(L, guarded<node_member>, 1);
+  set_function<node_translate, Charge::call>(L, "translate");
+  set_function<node_rotate, Charge::call>(L, "rotate");
+  set_function<add_child, Charge::call>(L, "addChild");
+  push_function<node_member, Charge::call>(L, 1);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
 
-  set_global<model>(L, "Model");
-  set_global<model_parts>(L, "modelParts");
-  set_global<transform>(L, "Transform");
-  set_global<group>(L, "Group");
-  set_global<matrix_transform>(L, "MatrixTransform");
+  set_global<model, Charge::call>(L, "Model");
+  set_global<model_parts, Charge::call>(L, "modelParts");
+  set_global<transform, Charge::call>(L, "Transform");
+  set_global<group, Charge::call>(L, "Group");
+  set_global<matrix_transform, Charge::call>(L, "MatrixTransform");
   lua_newtable(L);
-  set_function<box>(L, "box");
-  set_function<cylinder>(L, "cylinder");
-  set_function<cone>(L, "cone");
-  set_function<sphere>(L, "sphere");
-  set_function<tube>(L, "tube");
+  set_function<box, Charge::call>(L, "box");
+  set_function<cylinder, Charge::call>(L, "cylinder");
+  set_function<cone, Charge::call>(L, "cone");
+  set_function<sphere, Charge::call>(L, "sphere");
+  set_function<tube, Charge::call>(L, "tube");
   lua_setglobal(L, "Solid");
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/pinned_math.hpp"
+#include "engine/base/text.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 
@@ -11,15 +12,36 @@ namespace verisim::script {
 namespace {
 
 constexpr int kNestingMax = 8;  // of lists in a parameter
+constexpr std::size_t kParametersMax = 1000;
 
-nlohmann::json to_json(lua_State* L, int index, const std::string& what, int depth = 0) {
+/// What all parameters together may take: lists that stand in each other make much of little.
+class ParameterRoom {
+ public:
+  void take(lua_State* L, std::size_t bytes) {
+    constexpr std::size_t kMost = std::size_t{1} << 20;
+    Sandbox::charge(L, bytes);
+    taken_ += bytes;
+    if (taken_ > kMost) raise(L, "params: its values take more than {} bytes; read large data with dofile", kMost);
+  }
+
+ private:
+  std::size_t taken_ = 0;
+};
+
+nlohmann::json to_json(lua_State* L, ParameterRoom& room, int index, const std::string& what, int depth = 0) {
+  room.take(L, 32);
   switch (lua_type(L, index)) {
     case LUA_TBOOLEAN:
       return lua_toboolean(L, index) != 0;
     case LUA_TNUMBER:
       return number_at(L, index, what);
-    case LUA_TSTRING:
-      return text_at(L, index, what);
+    case LUA_TSTRING: {
+      std::string text = any_text_at(L, index, what);
+      const std::string fault = value_fault(text);
+      if (!fault.empty()) raise(L, "{} {}: '{}'", what, fault, shown(text, 40));
+      room.take(L, text.size());
+      return text;
+    }
     case LUA_TTABLE:
       break;
     default:
@@ -30,7 +52,7 @@ nlohmann::json to_json(lua_State* L, int index, const std::string& what, int dep
   const auto length = static_cast<int>(lua_objlen(L, index));
   for (int i = 1; i <= length; ++i) {
     lua_rawgeti(L, index, i);
-    list.push_back(to_json(L, lua_gettop(L), fmt::format("{}[{}]", what, i), depth + 1));
+    list.push_back(to_json(L, room, lua_gettop(L), fmt::format("{}[{}]", what, i), depth + 1));
     lua_pop(L, 1);
   }
   return list;
@@ -95,7 +117,8 @@ int declare_parameters(lua_State* L) {
   state.parameters_place = where(L);
   for (lua_pushnil(L); lua_next(L, 2) != 0; lua_pop(L, 1)) {
     if (lua_type(L, -2) != LUA_TSTRING) raise(L, "params has an entry without a name: {}", described(L, -1));
-    state.parameter_names.emplace_back(lua_tostring(L, -2));
+    if (state.parameter_names.size() >= kParametersMax) raise(L, "params has more than {} entries", kParametersMax);
+    state.parameter_names.push_back(name_at(L, -2, "params: the name of an entry"));
   }
   std::sort(state.parameter_names.begin(), state.parameter_names.end());
   check_names(L, state);
@@ -110,10 +133,11 @@ int declare_parameters(lua_State* L) {
     lua_setfield(L, 2, key.c_str());
     lua_pop(L, 1);
   }
+  ParameterRoom room;
   nlohmann::json json = nlohmann::json::object();
   for (const std::string& name : state.parameter_names) {
     lua_getfield(L, 2, name.c_str());
-    json[name] = to_json(L, lua_gettop(L), "params: " + name);
+    json[name] = to_json(L, room, lua_gettop(L), "params: " + name);
     lua_pushvalue(L, -1);
     lua_setfield(L, 1, name.c_str());
     lua_pop(L, 1);
@@ -142,14 +166,14 @@ int degrees(lua_State* L) {
 // outcome("inserted") or outcome("inserted", { stop = true })
 int say_outcome(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  const std::string said = text_at(L, 1, "outcome: the word");
+  const std::string said = name_at(L, 1, "outcome: the word");
   if (lua_gettop(L) > 1) {
     Fields fields(L, 2, "outcome");
     const bool stop = fields.boolean("stop").value_or(false);
     fields.finish(false);
     if (stop) state.stop();
   }
-  state.charge(L, state.outcome != said ? kEventWork : 1);
+  Sandbox::charge(L, state.outcome != said ? kEventWork : 1);
   if (state.outcome != said) state.event("outcome", said);
   state.outcome = said;
   return 0;
@@ -159,9 +183,9 @@ int say_outcome(lua_State* L) {
 int say_measure(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   Measure measure{
-      .name = text_at(L, 1, "measure: the name"), .value = number_at(L, 2, "measure: the value"), .unit = "1"};
-  if (!lua_isnoneornil(L, 3)) measure.unit = text_at(L, 3, "measure: the unit");
-  state.charge(L, 10 + state.measures.size());
+      .name = name_at(L, 1, "measure: the name"), .value = number_at(L, 2, "measure: the value"), .unit = "1"};
+  if (!lua_isnoneornil(L, 3)) measure.unit = name_at(L, 3, "measure: the unit");
+  Sandbox::charge(L, 10 + state.measures.size());
   for (Measure& known : state.measures) {
     if (known.name != measure.name) continue;
     if (known.unit != measure.unit)
@@ -169,6 +193,7 @@ int say_measure(lua_State* L) {
     known = measure;
     return 0;
   }
+  if (state.measures.size() >= kMeasuresMax) raise(L, "measure: there are {} measures already", kMeasuresMax);
   state.measures.push_back(std::move(measure));
   return 0;
 }
@@ -176,10 +201,10 @@ int say_measure(lua_State* L) {
 // event("passed", "the pin is through"): a line of /events.
 int say_event(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
-  state.charge(L, kEventWork);
-  const std::string kind = text_at(L, 1, "event: the kind");
+  Sandbox::charge(L, kEventWork);
+  const std::string kind = name_at(L, 1, "event: the kind");
   if (kind.empty()) raise(L, "event: the kind is an empty text; name what happened in a word or two");
-  state.event(kind, text_at(L, 2, "event: the text"));
+  state.event(kind, any_text_at(L, 2, "event: the text"));
   return 0;
 }
 
@@ -188,15 +213,15 @@ int say_event(lua_State* L) {
 void add_parameter_words(lua_State* L) {
   lua_newtable(L);
   lua_newtable(L);
-  set_function<declare_parameters>(L, "__call");
-  set_function<unknown_parameter>(L, "__index");
+  set_function<declare_parameters, Charge::call>(L, "__call");
+  set_function<unknown_parameter, Charge::call>(L, "__index");
   lua_setmetatable(L, -2);
   lua_setglobal(L, "params");
-  set_global<millimetres>(L, "mm");
-  set_global<degrees>(L, "deg");
-  set_global<say_outcome>(L, "outcome");
-  set_global<say_measure>(L, "measure");
-  set_global<say_event>(L, "event");
+  set_global<millimetres, Charge::call>(L, "mm");
+  set_global<degrees, Charge::call>(L, "deg");
+  set_global<say_outcome, Charge::call>(L, "outcome");
+  set_global<say_measure, Charge::call>(L, "measure");
+  set_global<say_event, Charge::call>(L, "event");
 }
 
 }  // namespace verisim::script

@@ -134,7 +134,7 @@ void read_geometry(lua_State* L, Fields& fields, BodyDescription& body, std::str
   // Charged as work, because parts lie outside Lua's memory: a loop must not fill the machine with bodies.
   std::size_t triangles = 0;
   for (const Part& part : placed_parts.parts) triangles += part.mesh.triangles.size();
-  state.charge(L, 20'000 + triangles + 10 * state.scene.bodies.size());
+  Sandbox::charge(L, 20'000 + triangles + 10 * state.scene.bodies.size());
   body.parts = std::move(placed_parts.parts);
   body.X_WB = body.X_WB * placed_parts.pose;
   stem = placed_parts.stem;
@@ -158,7 +158,7 @@ int add_object(lua_State* L) {
     raise(L, "addObject: the simulation runs already; add objects while the scene is built");
   Fields fields(L, 1, "addObject");
   BodyDescription body;
-  auto name = fields.text("name");
+  auto name = fields.name();
   if (name) name = recordable(L, *name);
   if (name && name_taken(state.scene, *name))
     raise(L, "addObject: there is a body '{}' already; give each its own name", *name);
@@ -194,8 +194,8 @@ int add_object(lua_State* L) {
 }  // namespace
 
 void add_scene_words(lua_State* L) {
-  set_global<define_simulation_parameters>(L, "defineSimulationParameters");
-  set_global<add_object>(L, "addObject");
+  set_global<define_simulation_parameters, Charge::call>(L, "defineSimulationParameters");
+  set_global<add_object, Charge::call>(L, "addObject");
 }
 
 }  // namespace verisim::script

@@ -34,12 +34,14 @@ int run_paused(lua_State* L) {
 int add_frame_task(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   const CounterPointer counter = get<CounterPointer>(L, 2, "addFrameTask: the task");
+  Sandbox::charge(L, state.counters.size());
   if (std::find(state.counters.begin(), state.counters.end(), counter) == state.counters.end())
     state.counters.push_back(counter);
   return 0;
 }
 
 int counter_of(lua_State* L) {
+  Sandbox::of(L).keep(sizeof(CollisionCounter));
   auto counter = std::make_shared<CollisionCounter>();
   counter->body = get<BodyHandle>(L, 1, "CollisionCounter: the body").index;
   push(L, counter);
@@ -81,23 +83,23 @@ int simulation_member(lua_State* L) {
 
 void add_simulation_words(lua_State* L) {
   lua_newtable(L);
-  set_function<start>(L, "startInSchedulerThread");
-  set_function<wait_for_stop>(L, "waitForStop");
-  set_function<stop>(L, "stop");
-  set_function<run_paused>(L, "runFunctionWithSimulationPaused");
-  set_function<add_frame_task>(L, "addFrameTask");
+  set_function<start, Charge::call>(L, "startInSchedulerThread");
+  set_function<wait_for_stop, Charge::call>(L, "waitForStop");
+  set_function<stop, Charge::call>(L, "stop");
+  set_function<run_paused, Charge::call>(L, "runFunctionWithSimulationPaused");
+  set_function<add_frame_task, Charge::call>(L, "addFrameTask");
   lua_newtable(L);
-  set_function<simulation_member>(L, "__index");
+  set_function<simulation_member, Charge::call>(L, "__index");
   lua_setmetatable(L, -2);
   lua_setglobal(L, "simulation");
 
   push_metatable<CounterPointer>(L);
   lua_newtable(L);
-  set_function<voxel_collisions>(L, "getNumVoxelCollisions");
-  set_function<reset_counter>(L, "resetCounter");
+  set_function<voxel_collisions, Charge::call>(L, "getNumVoxelCollisions");
+  set_function<reset_counter, Charge::call>(L, "resetCounter");
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
-  set_global<counter_of>(L, "CollisionCounter");
+  set_global<counter_of, Charge::call>(L, "CollisionCounter");
 }
 
 }  // namespace verisim::script

@@ -230,45 +230,45 @@ int radians(lua_State* L) {
 
 void add_vector_type(lua_State* L) {
   push_metatable<Vector3d>(L);
-  set_function<add_vectors>(L, "__add");
-  set_function<subtract_vectors>(L, "__sub");
-  set_function<negate_vector>(L, "__unm");
-  set_function<multiply_vector>(L, "__mul");
-  set_function<divide_vector>(L, "__div");
-  set_function<cross_vectors>(L, "__pow");
-  set_function<vectors_equal>(L, "__eq");
-  set_function<vector_text>(L, "__tostring");
+  set_function<add_vectors, Charge::call>(L, "__add");
+  set_function<subtract_vectors, Charge::call>(L, "__sub");
+  set_function<negate_vector, Charge::call>(L, "__unm");
+  set_function<multiply_vector, Charge::call>(L, "__mul");
+  set_function<divide_vector, Charge::call>(L, "__div");
+  set_function<cross_vectors, Charge::call>(L, "__pow");
+  set_function<vectors_equal, Charge::call>(L, "__eq");
+  set_function<vector_text, Charge::call>(L, "__tostring");
   lua_newtable(L);
-  set_function<vector_component<0>>(L, "x");
-  set_function<vector_component<1>>(L, "y");
-  set_function<vector_component<2>>(L, "z");
-  set_function<vector_length>(L, "length");
-  set_function<vector_length_squared>(L, "length2");
-  set_function<normalize_vector>(L, "normalize");
-  set_function<set_vector>(L, "set");
-  lua_pushcclosure(L, guarded<vector_member>, 1);
+  set_function<vector_component<0>, Charge::call>(L, "x");
+  set_function<vector_component<1>, Charge::call>(L, "y");
+  set_function<vector_component<2>, Charge::call>(L, "z");
+  set_function<vector_length, Charge::call>(L, "length");
+  set_function<vector_length_squared, Charge::call>(L, "length2");
+  set_function<normalize_vector, Charge::call>(L, "normalize");
+  set_function<set_vector, Charge::call>(L, "set");
+  push_function<vector_member, Charge::call>(L, 1);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
 }
 
 void add_quat_type(lua_State* L) {
   push_metatable<Quaterniond>(L);
-  set_function<multiply_quat>(L, "__mul");
-  set_function<quat_inverse>(L, "__unm");
-  set_function<quats_equal>(L, "__eq");
-  set_function<quat_text>(L, "__tostring");
+  set_function<multiply_quat, Charge::call>(L, "__mul");
+  set_function<quat_inverse, Charge::call>(L, "__unm");
+  set_function<quats_equal, Charge::call>(L, "__eq");
+  set_function<quat_text, Charge::call>(L, "__tostring");
   lua_newtable(L);
-  set_function<quat_component<0>>(L, "x");
-  set_function<quat_component<1>>(L, "y");
-  set_function<quat_component<2>>(L, "z");
-  set_function<quat_component<3>>(L, "w");
-  set_function<quat_inverse>(L, "inverse");
-  set_function<quat_conjugate>(L, "conj");
-  set_function<quat_length>(L, "length");
-  set_function<quat_make_rotate>(L, "makeRotate");
-  set_function<slerp_quat>(L, "slerp");
-  set_function<quat_angle>(L, "getAngle");
-  set_function<quat_axis>(L, "getAxis");
+  set_function<quat_component<0>, Charge::call>(L, "x");
+  set_function<quat_component<1>, Charge::call>(L, "y");
+  set_function<quat_component<2>, Charge::call>(L, "z");
+  set_function<quat_component<3>, Charge::call>(L, "w");
+  set_function<quat_inverse, Charge::call>(L, "inverse");
+  set_function<quat_conjugate, Charge::call>(L, "conj");
+  set_function<quat_length, Charge::call>(L, "length");
+  set_function<quat_make_rotate, Charge::call>(L, "makeRotate");
+  set_function<slerp_quat, Charge::call>(L, "slerp");
+  set_function<quat_angle, Charge::call>(L, "getAngle");
+  set_function<quat_axis, Charge::call>(L, "getAxis");
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
 }
@@ -279,14 +279,14 @@ void add_vector_words(lua_State* L) {
   add_vector_type(L);
   add_quat_type(L);
   lua_newtable(L);  // osg
-  for (const char* name : {"Vec3", "Vec3d", "Vec3f"}) set_function<make_vector>(L, name);
-  set_function<make_quat>(L, "Quat");
+  for (const char* name : {"Vec3", "Vec3d", "Vec3f"}) set_function<make_vector, Charge::call>(L, name);
+  set_function<make_quat, Charge::call>(L, "Quat");
   lua_setglobal(L, "osg");
-  for (const char* name : {"Vec", "Vecd", "Vecf"}) set_global<make_vector>(L, name);
-  set_global<angle_axis>(L, "AngleAxis");
-  set_global<axis>(L, "Axis");
-  set_global<radians_of_degrees>(L, "Degrees");
-  set_global<radians>(L, "Radians");
+  for (const char* name : {"Vec", "Vecd", "Vecf"}) set_global<make_vector, Charge::call>(L, name);
+  set_global<angle_axis, Charge::call>(L, "AngleAxis");
+  set_global<axis, Charge::call>(L, "Axis");
+  set_global<radians_of_degrees, Charge::call>(L, "Degrees");
+  set_global<radians, Charge::call>(L, "Radians");
   lua_newtable(L);
   const std::pair<const char*, double> units[] = {
       {"inches", 0.0254}, {"feet", 0.3048}, {"meters", 1}, {"centimeters", 0.01}, {"millimeters", 0.001}};

@@ -78,12 +78,13 @@ const wii::TrackerEntry& tracker_of(lua_State* L, const std::string& tracker) {
 int wii_head(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   if (state.simulation != nullptr) raise(L, "WiiHead: the simulation runs already; call it while the scene is built");
-  state.charge(L, 1000 + 100 * state.companions.size());
+  Sandbox::charge(L, 1000 + 100 * state.companions.size());
+  state.keep(100'000);  // a virtual remote and a tracker
   Fields fields(L, 1, "WiiHead");
   auto head = std::make_shared<HeadNode>();
   head->word = "WiiHead";
   head->place = where(L);
-  head->name = fields.text("name").value_or("head");
+  head->name = fields.name().value_or("head");
   head->tracker = fields.text("tracker").value_or(head->tracker);
   head->virtual_remote.leds = tracker_of(L, head->tracker).leds;
   read_remote(L, fields, *head);
@@ -137,10 +138,10 @@ int head_text(lua_State* L) {
 
 void add_wii_words(lua_State* L) {
   push_metatable<HeadPointer>(L);
-  set_function<head_member>(L, "__index");
-  set_function<head_text>(L, "__tostring");
+  set_function<head_member, Charge::call>(L, "__index");
+  set_function<head_text, Charge::call>(L, "__tostring");
   lua_pop(L, 1);
-  set_global<wii_head>(L, "WiiHead");
+  set_global<wii_head, Charge::call>(L, "WiiHead");
 }
 
 }  // namespace verisim::script

@@ -62,6 +62,7 @@ Declaring::Declaring(const BodyDescription& body) {
 }
 
 Vector3d Declaring::center(std::uint32_t voxel) const {
+  VERISIM_ASSERT(voxel < surface_voxels());
   const Pointshell& shell = voxels_.shell;
   // The shell has it in single precision; the grid has it to the last bit.
   const Vector3d near = shell.reference + Vector3d(shell.x[voxel], shell.y[voxel], shell.z[voxel]);
@@ -74,6 +75,7 @@ std::size_t Declaring::memory_bytes() const {
 
 FeatureSetId Declaring::give(BodyDescription& body, const Vector3d& p,
                              std::span<const DeclaredFeatures::Entity> set) const {
+  VERISIM_ASSERT(body.voxel_size == voxels_.voxmap.voxel_size);
   const std::int64_t voxel = voxels_.voxmap.surface_number(voxels_.voxmap.cell_of(p));
   if (voxel < 0)
     fail(ErrorKind::input, "({:g}, {:g}, {:g}) is in no surface voxel of '{}'; give the centre of one", p.x(), p.y(),

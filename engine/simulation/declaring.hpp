@@ -16,7 +16,7 @@ class Declaring {
   explicit Declaring(const BodyDescription& body);
 
   [[nodiscard]] std::uint32_t surface_voxels() const { return voxels_.voxmap.surface_count; }
-  [[nodiscard]] Vector3d center(std::uint32_t voxel) const;
+  [[nodiscard]] Vector3d center(std::uint32_t voxel) const;  ///< @pre voxel < surface_voxels()
   [[nodiscard]] std::size_t memory_bytes() const;
 
   /// Gives the surface voxel that holds p the set, in body.declared. Returns the set's number, 0 for an empty set.

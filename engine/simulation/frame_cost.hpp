@@ -7,6 +7,8 @@
 namespace verisim {
 
 struct FrameCost {
+  std::uint64_t pairs_met = 0;
+  std::uint64_t links = 0;
   std::uint64_t pairs_tested = 0;
   std::uint64_t clusters = 0;
   std::uint64_t points_tested = 0;
@@ -32,6 +34,9 @@ struct CostCounter {
 };
 
 inline constexpr std::array kCostCounters = {
+    CostCounter{"pairs_met", "1", "pairs of bodies that came near for the first time: rows added to /state/pairs",
+                &FrameCost::pairs_met},
+    CostCounter{"links", "1", "pairs of bodies that were near: rows added to /state/links", &FrameCost::links},
     CostCounter{"pairs_tested", "1", "pairs of bodies queried", &FrameCost::pairs_tested},
     CostCounter{"clusters", "1", "clusters of points looked at", &FrameCost::clusters},
     CostCounter{"points_tested", "1", "points transformed and looked up", &FrameCost::points_tested},

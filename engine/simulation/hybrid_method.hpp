@@ -96,6 +96,16 @@ class HybridMethod {
   int precedence_;
 };
 
+/// A method that acts on every such pair, each time by an `OfPair` made of it.
+template <typename OfPair>
+class MethodByPair final : public HybridMethod {
+ public:
+  using HybridMethod::HybridMethod;
+  [[nodiscard]] std::unique_ptr<PairMethod> make(const Pair& pair) const override {
+    return std::make_unique<OfPair>(pair);
+  }
+};
+
 using Hybrid = const HybridMethod*;  ///< never null
 
 namespace hybrid {

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/user_file.hpp"
 
 namespace verisim {
 namespace {
@@ -14,8 +13,22 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Whole from the root on, also for a file that is not there: weakly_canonical alone leaves that one's name bare.
+fs::path from_root(const fs::path& path, std::error_code& error) {
+  const fs::path folder = path.is_absolute() ? fs::path() : fs::current_path(error);
+  return error ? fs::path() : fs::weakly_canonical(folder / path, error);
+}
+
 fs::path from_root(const fs::path& path) {
-  return fs::weakly_canonical(fs::current_path() / path);
+  std::error_code error;
+  if (!path.is_absolute()) (void)fs::current_path(error);
+  if (error)
+    fail(ErrorKind::input, "the working directory cannot be found ({}); change to another or give whole paths",
+         error.message());
+  fs::path real = from_root(path, error);
+  if (error)
+    fail(ErrorKind::input, "{}: cannot be reached ({}); check the links and folders on the way", path.string(),
+         error.message());
+  return real;
 }
 
 bool is_below(const fs::path& path, const fs::path& folder) {
@@ -24,17 +37,11 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return at_folder == folder.end() || (std::next(at_folder) == folder.end() && at_folder->empty());
 }
 
-std::string content_of(const std::string& name, const fs::path& path) {
+void check_is_there(const std::string& name, const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error))
+  if (!fs::exists(path, error) && !error)
     fail(ErrorKind::input, "{}: there is no such file in {}; check the name and the folder", name,
          path.parent_path().string());
-  if (fs::is_directory(path, error)) fail(ErrorKind::input, "{}: is a folder, a file is wanted", name);
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in) fail(ErrorKind::input, "{}: cannot be read; check its permissions", name);
-  return content.str();
 }
 
 std::string options_key(const LoadOptions& o) {
@@ -46,7 +53,9 @@ std::string options_key(const LoadOptions& o) {
 
 Inputs Inputs::live(const std::string& folder, std::vector<std::string> named) {
   Inputs inputs;
-  inputs.folder_ = from_root(folder.empty() ? "." : folder).string();
+  std::error_code lost;  // the working directory: whole paths of the command line are still good
+  (void)fs::current_path(lost);
+  if (!lost || fs::path(folder).is_absolute()) inputs.folder_ = from_root(folder.empty() ? "." : folder).string();
   for (const std::string& path : named) inputs.named_.push_back(from_root(path).string());
   return inputs;
 }
@@ -68,11 +77,12 @@ Inputs Inputs::stored(std::vector<InputFile> files, std::vector<StoredModel> mod
 
 std::string Inputs::resolve(const std::string& name) const {
   // A name from the command line is meant from where the user stands, as a shell completes it.
-  const fs::path from_here = from_root(name);
+  std::error_code elsewhere;  // where the user stands may be no place, or lead to none of that name
+  const fs::path from_here = from_root(name, elsewhere);
   if (std::find(named_.begin(), named_.end(), from_here.string()) != named_.end()) return from_here.string();
   const fs::path given(name);
   const fs::path path = from_root(given.is_absolute() ? given : fs::path(folder_) / given);
-  if (is_below(path, folder_)) return path.string();
+  if (!folder_.empty() && is_below(path, folder_)) return path.string();
   for (const std::string& folder : named_)
     if (is_below(path, folder)) return path.string();
   fail(ErrorKind::input,
@@ -85,7 +95,8 @@ bool Inputs::exists(const std::string& name) const {
   if (!live_) return false;
   try {
     std::error_code error;
-    return fs::is_regular_file(resolve(name), error);
+    const fs::path path = resolve(name);
+    return fs::exists(path, error) && !fs::is_directory(path, error);
   } catch (const Error&) {
     return false;
   }
@@ -95,7 +106,11 @@ const std::string& Inputs::read(const std::string& name) {
   const auto known = contents_.find(name);
   if (known != contents_.end()) return known->second;
   if (!live_) fail(ErrorKind::input, "{}: is not among the run file's inputs; the run was recorded without it", name);
-  std::string content = content_of(name, resolve(name));
+  const std::string path = resolve(name);
+  check_is_there(name, path);
+  const UserFile file(name, path);
+  std::string content = file.content();
+  opened_.push_back(file.identity());
   order_.push_back(name);
   return contents_[name] = std::move(content);
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/user_file.hpp"
 #include "engine/geometry/loader.hpp"
 #include "engine/record/run_file.hpp"
 
@@ -24,13 +25,15 @@ class Inputs {
   /// Content of a file, read once. Error(input): not there, not a file, outside the allowed folders (says which is
   /// allowed).
   const std::string& read(const std::string& name);
-  /// Is there such a file (and may it be read)?
+  /// Is there such a file (and may it be read)? A folder is none; of a FIFO or a device, read() says what it is.
   [[nodiscard]] bool exists(const std::string& name) const;
 
   /// Parts of a model file, a Solid. Loaded once per (name, options).
   const std::vector<Part>& model(const std::string& name, const LoadOptions& options);
   const Part& solid(const Solid& solid, const LoadOptions& options);
 
+  /// The files that were opened so far: what a command writes must be none of them.
+  [[nodiscard]] const std::vector<FileIdentity>& opened() const { return opened_; }
   /// What was read so far, in order of first use: goes into the run file.
   [[nodiscard]] std::vector<InputFile> files() const;
   [[nodiscard]] std::vector<StoredModel> models() const;
@@ -39,6 +42,7 @@ class Inputs {
   bool live_ = true;
   std::string folder_;
   std::vector<std::string> named_;  ///< absolute
+  std::vector<FileIdentity> opened_;
   std::vector<std::string> order_;
   std::map<std::string, std::string> contents_;
   std::vector<std::string> model_order_;

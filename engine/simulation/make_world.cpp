@@ -1,15 +1,16 @@
 // How a scene becomes a World.
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_set>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/exact/convex_step.hpp"
 #include "engine/geometry/merged.hpp"
+#include "engine/simulation/body_maker.hpp"
 #include "engine/simulation/hybrid_method.hpp"
 #include "engine/simulation/world.hpp"
-#include "engine/voxel/association.hpp"
-#include "engine/voxel/voxelize.hpp"
 
 namespace verisim {
 namespace {
@@ -21,6 +22,13 @@ void check_closed(const BodyDescription& body) {
       fail(ErrorKind::input,
            "'{}': part '{}' does not bound a solid ({}); repair the model, 'verisim inspect' shows where", body.name,
            part.name, part.notes.empty() ? "open mesh" : part.notes.back());
+}
+
+void check_names(const Scene& scene) {
+  std::unordered_set<std::string_view> names;
+  for (const BodyDescription& body : scene.bodies)
+    if (!names.insert(body.name).second)
+      fail(ErrorKind::input, "two objects are called '{}'; names are how run files tell bodies apart", body.name);
 }
 
 void check(const SimulationParameters& p) {
@@ -43,33 +51,20 @@ void check(const SimulationParameters& p) {
   if (p.duration) positive(*p.duration, "duration", "s");
 }
 
-double distance(const Bounds& a, const Bounds& b) {
-  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
-}
+}  // namespace
 
-void forget_brep(Part& part) {
-  part.faces.clear();
-  part.edges.clear();
-  part.mesh.face_of_triangle.clear();
-}
-
-Bounds in_world(const Bounds& bounds_B, const Pose& X_WB) {
+Bounds world_box(const Body& body) {
+  const Pose X_WB = body.rigid.pose();
+  const Bounds& b = body.bounds_B;
   Bounds world;
   for (int corner = 0; corner < 8; ++corner)
-    world.include(X_WB * Vector3d((corner & 1) != 0 ? bounds_B.max.x() : bounds_B.min.x(),
-                                  (corner & 2) != 0 ? bounds_B.max.y() : bounds_B.min.y(),
-                                  (corner & 4) != 0 ? bounds_B.max.z() : bounds_B.min.z()));
+    world.include(X_WB * Vector3d((corner & 1) != 0 ? b.max.x() : b.min.x(), (corner & 2) != 0 ? b.max.y() : b.min.y(),
+                                  (corner & 4) != 0 ? b.max.z() : b.min.z()));
   return world;
 }
 
-}  // namespace
-
-double box_gap(const Body& a, const Body& b) {
-  return distance(in_world(a.bounds_B, a.rigid.pose()), in_world(b.bounds_B, b.rigid.pose()));
-}
-
-double grown_by(const Body& body) {
-  return body.voxels ? 2 * body.voxels->voxmap.voxel_size : 0;
+double gap(const Bounds& a, const Bounds& b) {
+  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
 }
 
 namespace {
@@ -93,10 +88,6 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   const BodyDescription& description = scene.bodies[index];
   const SimulationParameters& p = world.parameters;
   check_closed(description);
-  for (const Body& other : world.bodies)
-    if (other.name == description.name)
-      fail(ErrorKind::input, "two objects are called '{}'; names are how run files tell bodies apart",
-           description.name);
   Body body;
   body.name = description.name;
   const MassProperties mass = merged(description.parts).mass;
@@ -108,6 +99,7 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.rigid.set_pose(description.X_WB);
   body.rigid.v_C = description.twist.linear;
   body.rigid.omega = description.twist.angular;
+  body.voxel_size = description.voxel_size;
   body.method = p.contact == ContactMethod::fcl ? hybrid::off : description.hybrid.value_or(p.hybrid);
   body.hybrid_enabled = description.hybrid_enabled;
   body.selectable = description.selectable && !description.fixed;
@@ -122,59 +114,21 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   return body;
 }
 
-/// How far the surface of a body can get from where it starts [m]; infinite for what flies freely.
-double reach_of(const World& world, const Body& body) {
-  if (!body.can_move) return 0;
-  if (world.parameters.all_bodies_are_dynamic) return std::numeric_limits<double>::infinity();
-  double travel = 0;
-  for (const Hand& hand : world.hands) travel = std::max(travel, hand.device->travel());
-  return travel + body.bounds_B.size().norm();  // a body that turns sweeps its own size
-}
-
-bool may_meet_another(const World& world, std::size_t i) {
-  const Body& body = world.bodies[i];
-  for (std::size_t j = 0; j < world.bodies.size(); ++j) {
-    const Body& other = world.bodies[j];
-    if (i == j || !(body.can_move || other.can_move)) continue;
-    if (box_gap(body, other) <= reach_of(world, body) + reach_of(world, other)) return true;
+/// The convex step has room for so many.
+void check_exact_count(const Scene& scene, const World& world) {
+  std::ptrdiff_t solved = 0;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    if (!body.can_move || !will_be_exact(scene.bodies[i], body.method)) continue;
+    if (++solved > exact::ConvexStep::kBodiesMax)
+      fail(ErrorKind::input, "'{}': more than {} moving bodies are 'exact'; give the others hybrid = \"restore\"",
+           body.name, exact::ConvexStep::kBodiesMax);
   }
-  return false;
-}
-
-void voxelize_body(const BodyDescription& description, const SimulationParameters& p, unsigned threads, Body& body) {
-  VoxelizeOptions options;
-  options.voxel_size = description.voxel_size;
-  options.point_spacing = description.point_spacing;
-  options.threads = threads;
-  Part part = merged(description.parts);
-  if (!description.use_brep) forget_brep(part);
-  auto voxels = std::make_shared<VoxelBody>(voxelize(description.name, part.mesh, options));
-  if (body.method->needs_entities() && (part.has_brep() || description.declared))
-    associate(description.name, part, {.threads = threads, .declared = description.declared.get()}, *voxels);
-  body.voxels = std::move(voxels);
-  if (p.contact == ContactMethod::fcl) body.mesh = std::make_unique<MeshTree>(part.mesh);
-}
-
-/// What the body's method needs of its entities.
-void make_entities(const BodyDescription& description, const World& world, Body& body) {
-  const BodyFeatures& features = body.voxels->features;
-  if (features.entity_count() == 0) return;
-  body.entities = std::make_unique<EntitySets>(features.faces, features.edges, features.sets);
-  if (!body.method->needs_precise_surfaces() || !description.use_brep) return;
-  exact::BodyOptions options;
-  options.spacing = description.voxel_size;
-  auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
-  if (precise->has_precise_faces()) body.exact = std::move(precise);
-  const auto solved =
-      std::count_if(world.bodies.begin(), world.bodies.end(), [](const Body& b) { return b.exact && b.can_move; });
-  if (solved > exact::ConvexStep::kBodiesMax)
-    fail(ErrorKind::input, "'{}': more than {} moving bodies are 'exact'; give the others hybrid = \"restore\"",
-         body.name, exact::ConvexStep::kBodiesMax);
 }
 
 }  // namespace
 
-World make_world(const Scene& scene, unsigned threads, std::vector<Event>& events) {
+World make_world(const Scene& scene, std::vector<Event>& events) {
   check(scene.parameters);
   VERISIM_ASSERT(scene.parameters.hybrid != nullptr);
   for (const BodyDescription& body : scene.bodies) VERISIM_ASSERT(!body.hybrid || *body.hybrid != nullptr);
@@ -187,20 +141,15 @@ World make_world(const Scene& scene, unsigned threads, std::vector<Event>& event
               .dt = scene.parameters.timestep,
               .bodies = {},
               .links = {},
+              .near_links = {},
               .hands = {},
               .companions = scene.companions,
               .clocks = Clocks(scene.parameters.timestep)};
   choose_integrator(scene, world, events);
+  check_names(scene);
   for (const auto& device : scene.devices) world.hands.emplace_back().device = device;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (!may_meet_another(world, i)) continue;
-    voxelize_body(scene.bodies[i], world.parameters, threads, world.bodies[i]);
-    make_entities(scene.bodies[i], world, world.bodies[i]);
-  }
-  for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < world.bodies.size(); ++j)
-      if (world.bodies[i].can_move || world.bodies[j].can_move) world.links.push_back({i, j});
+  check_exact_count(scene, world);
   return world;
 }
 

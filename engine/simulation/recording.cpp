@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
 
 namespace verisim {
@@ -37,25 +38,33 @@ double depth_of(const Stages& stages, std::size_t l) {
   return std::max(stages.contacts.depth_max(l), stages.exact.depth_max(l));
 }
 
-void declare_link(const World& world, const Stages& stages, std::size_t l, Columns& columns) {
+void declare_links(const World& world, const Stages& stages, Columns& columns) {
   const std::vector<std::string> constraint_names(kConstraintKindNames.begin(), kConstraintKindNames.end());
-  const auto [first, second] = world.links[l];
-  const std::string path = "/state/link/" + world.bodies[first].name + "~" + world.bodies[second].name;
-  columns.add(path + "/contacts", "1", "colliding voxel pairs; places of precise contact where the method is exact",
-              [&stages, l] { return contacts_of(stages, l); });
-  columns.add(path + "/cache_hits", "1", "constraint look-ups that were memoized",
-              [&stages, l] { return stages.methods.look_ups(l).hits; });
-  columns.add(path + "/cache_misses", "1", "constraint look-ups that had to be recognized",
-              [&stages, l] { return stages.methods.look_ups(l).misses; });
-  columns.add(
-      path + "/constraint", "1", "strongest recognized constraint; none where the method is exact or off",
-      [&stages, l] { return static_cast<std::uint8_t>(stages.methods.look_ups(l).constraint); }, constraint_names);
-  columns.add(path + "/alignment", "1", "alignment alpha of that constraint",
-              [&stages, l] { return stages.methods.look_ups(l).alpha; });
-  columns.add(path + "/max_penetration", "m", "deepest contact", [&stages, l] { return depth_of(stages, l); });
-  columns.add(path + "/wrench", "N, N m",
-              "on the second body by the first as applied, about the second's centre of mass; world",
-              [&stages, l] { return stages.reactions.on_second(l); });
+  const auto add = [&](const char* name, const char* units, const char* description, auto get,
+                       std::vector<std::string> names = {}) {
+    columns.add_to_table(std::string("/state/links/") + name, units, description, get, "/cost/links", std::move(names));
+  };
+  add("frame", "1", "row of the frame, from 0",
+      [&world](std::size_t) { return static_cast<std::uint32_t>(world.frame - 1); });
+  add("pair", "1", "row of the pair in /state/pairs, from 0",
+      [&world](std::size_t l) { return static_cast<std::uint32_t>(world.links[l].number); });
+  add("contacts", "1", "colliding voxel pairs; places of precise contact where the method is exact",
+      [&stages](std::size_t l) { return contacts_of(stages, l); });
+  add("by_voxels", "1", "how many of the contacts voxels answered",
+      [&stages](std::size_t l) { return stages.contacts.count(l); });
+  add("cache_hits", "1", "constraint look-ups that were memoized",
+      [&stages](std::size_t l) { return stages.methods.look_ups(l).hits; });
+  add("cache_misses", "1", "constraint look-ups that had to be recognized",
+      [&stages](std::size_t l) { return stages.methods.look_ups(l).misses; });
+  add(
+      "constraint", "1", "strongest recognized constraint; none where the method is exact or off",
+      [&stages](std::size_t l) { return static_cast<std::uint8_t>(stages.methods.look_ups(l).constraint); },
+      constraint_names);
+  add("alignment", "1", "alignment alpha of that constraint",
+      [&stages](std::size_t l) { return stages.methods.look_ups(l).alpha; });
+  add("max_penetration", "m", "deepest contact", [&stages](std::size_t l) { return depth_of(stages, l); });
+  add("wrench", "N, N m", "on the second body by the first as applied, about the second's centre of mass; world",
+      [&stages](std::size_t l) { return stages.reactions.on_second(l); });
 }
 
 std::array<double, 8> balance_of(const EnergyBook& book) {
@@ -69,7 +78,7 @@ Columns declare(const World& world, const Stages& stages, const FrameCost& cost)
   columns.add("/state/time", "s", "simulated time at the end of the frame", [&world] { return world.time(); });
   for (std::size_t i = 0; i < world.bodies.size(); ++i) declare_body(world, stages, i, columns);
   for (const Hand& hand : world.hands) declare_device(*hand.device, columns);
-  for (std::size_t l = 0; l < world.links.size(); ++l) declare_link(world, stages, l, columns);
+  declare_links(world, stages, columns);
   for (const CostCounter& counter : kCostCounters)
     columns.add(std::string("/cost/") + counter.name, counter.unit, counter.meaning,
                 [&cost, count = counter.count] { return static_cast<std::uint32_t>(cost.*count); });
@@ -81,42 +90,92 @@ Columns declare(const World& world, const Stages& stages, const FrameCost& cost)
   return columns;
 }
 
-Schema schema_of(const Columns& columns) {
+Schema schema_of(const World& world, const Columns& columns) {
   Schema schema;
+  for (const Body& body : world.bodies) schema.bodies.push_back(body.name);
+  schema.pairs_in_frame = "/cost/pairs_met";
   for (const Column& column : columns.state()) schema.add(column);
-  schema.add({"/state/hash",
-              Dtype::u64,
-              1,
-              "1",
-              "XXH3-64 of all values of /state in this row, seeded with the hash of the row before",
-              0,
-              {}});
+  schema.add(
+      {"/state/hash",
+       Dtype::u64,
+       1,
+       "1",
+       "XXH3-64 of all values of /state in this row, seeded with the hash of the row before; then of its rows of "
+       "/state/links, seeded with that",
+       0,
+       {}});
   for (const Column& column : columns.other()) schema.add(column);
+  for (const Column& column : columns.table()) schema.add(column);
   return schema;
 }
 
 }  // namespace
 
 Recording::Recording(const World& world, const Stages& stages, const FrameCost& cost)
-    : columns_(declare(world, stages, cost)), schema_(schema_of(columns_)), row_(schema_.row_bytes(), std::byte{0}) {
+    : columns_(declare(world, stages, cost)),
+      state_numbers_(columns_.state()),
+      other_numbers_(columns_.other()),
+      table_numbers_(columns_.table()),
+      schema_(schema_of(world, columns_)),
+      row_(schema_.row_bytes(), std::byte{0}) {
   VERISIM_ASSERT(schema_.state_bytes() == columns_.state_bytes());
   VERISIM_ASSERT(schema_.row_bytes() == columns_.state_bytes() + sizeof hash_ + columns_.other_bytes());
+  VERISIM_ASSERT(schema_.table_row_bytes() == columns_.table_bytes());
 }
 
-void Recording::take(const World& world, const Stages& stages, const FrameCost& cost) {
-  add_up(world, stages, cost);
-  columns_.put_state(row_.data());
-  hash_ = hash_bytes(row_.data(), columns_.state_bytes(), hash_);
+void Recording::take(const World& world, const Stages& stages, FrameCost& cost) {
+  take_links(world, stages);
+  cost.links = table_.size() / columns_.table_bytes();
   std::byte* at = row_.data() + columns_.state_bytes();
+  columns_.put_state(row_.data());
+  columns_.put_other(at + sizeof hash_);
+  check_finite(world);
+  add_up(world, stages, cost);
+  hash_ = hash_bytes(row_.data(), columns_.state_bytes(), hash_);
+  hash_ = hash_bytes(table_.data(), table_.size(), hash_);
   put_value(at, hash_);
-  columns_.put_other(at);
+}
+
+void Recording::check_finite(const World& world) const {
+  const auto check = [&](const FiniteNumbers& numbers, const std::vector<Column>& columns, const std::byte* row,
+                         const auto& whose) {
+    if (numbers.all_in(row)) return;
+    const auto [column, component, value] = *numbers.first_not_in(row);
+    const std::string index = columns[column].width > 1 ? fmt::format("[{}]", component) : "";
+    fail(ErrorKind::diverged,
+         "frame {}: {}{}{} is {}, not a finite number any more; lower the stiffness or the time step", world.frame - 1,
+         columns[column].path, index, whose(), value);
+  };
+  const auto nobody = [] { return std::string(); };
+  check(state_numbers_, columns_.state(), row_.data(), nobody);
+  check(other_numbers_, columns_.other(), row_.data() + columns_.state_bytes() + sizeof hash_, nobody);
+  std::size_t at = 0;
+  for (const std::size_t l : recorded_links_) {
+    check(table_numbers_, columns_.table(), table_.data() + at, [&] {
+      return fmt::format(" of '{}' and '{}'", world.bodies[world.links[l].first].name,
+                         world.bodies[world.links[l].second].name);
+    });
+    at += columns_.table_bytes();
+  }
+}
+
+/// A row for every pair whose boxes meet, and for those that a search for precise contacts looked at besides.
+void Recording::take_links(const World& world, const Stages& stages) {
+  table_.clear();
+  recorded_links_.clear();
+  for (const std::size_t l : world.near_links) {
+    if (!stages.contacts.meets(l) && !stages.exact.searched(l)) continue;
+    recorded_links_.push_back(l);
+    table_.resize(table_.size() + columns_.table_bytes());
+    columns_.put_table_row(table_.data() + table_.size() - columns_.table_bytes(), l);
+  }
 }
 
 void Recording::add_up(const World& world, const Stages& stages, const FrameCost& cost) {
   totals_.collision_frames += cost.contacts > 0 ? 1 : 0;
   totals_.contacts += cost.contacts;
   decltype(totals_.constraint_frames) active{};  // 0 or 1 per kind
-  for (std::size_t l = 0; l < world.links.size(); ++l) {
+  for (const std::size_t l : world.near_links) {
     totals_.penetration_max = std::max(totals_.penetration_max, depth_of(stages, l));
     const LookUps found = stages.methods.look_ups(l);
     totals_.cache_hits += found.hits;

@@ -1,9 +1,12 @@
 // What a row of a run file holds (INTERFACES section 2), each fact declared once (base/columns.hpp), and the sums over
-// the run. The row's state bytes, chained to the hash of the row before, are the state hash.
+// the run. The row's state bytes, then those of the frame's links, chained to the hash of the row before, are the state
+// hash.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "engine/base/finite.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/simulation/frame_cost.hpp"
 #include "engine/simulation/stages/stages.hpp"
@@ -15,21 +18,32 @@ class Recording {
  public:
   /// All of it is read once a frame, so it must outlive the recording.
   Recording(const World& world, const Stages& stages, const FrameCost& cost);
+  /// Between frames: for so many links in a frame.
+  void make_room(std::size_t links) {
+    table_.reserve(links * columns_.table_bytes());
+    recorded_links_.reserve(links);
+  }
 
-  /// After a frame: sums, row, hash.
-  void take(const World& world, const Stages& stages, const FrameCost& cost);
+  /// After a frame: row, sums, hash. Sets FrameCost::links. Error(diverged) with the column if a number is not finite;
+  /// sums and hash are then those of the frame before.
+  void take(const World& world, const Stages& stages, FrameCost& cost);
 
   [[nodiscard]] const Schema& schema() const { return schema_; }
   [[nodiscard]] const std::vector<std::byte>& row() const { return row_; }
+  [[nodiscard]] std::span<const std::byte> table_rows() const { return table_; }
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
   [[nodiscard]] const Totals& totals() const { return totals_; }
 
  private:
+  void take_links(const World& world, const Stages& stages);
+  void check_finite(const World& world) const;
   void add_up(const World& world, const Stages& stages, const FrameCost& cost);
 
   Columns columns_;
+  FiniteNumbers state_numbers_, other_numbers_, table_numbers_;
   Schema schema_;
-  std::vector<std::byte> row_;
+  std::vector<std::byte> row_, table_;
+  std::vector<std::size_t> recorded_links_;  ///< whose rows the table holds
   std::uint64_t hash_ = 0;
   Totals totals_;
 };

@@ -6,14 +6,57 @@
 #include <cstring>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 #include "engine/simulation/implementation.hpp"
 #include "engine/simulation/world.hpp"
 
 namespace verisim {
 
-Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
-    : implementation_(std::make_unique<Implementation>(scene, options)) {}
+Simulation::Simulation(Scene scene, const SimulationOptions& options)
+    : implementation_(std::make_unique<Implementation>(std::move(scene), options)) {
+  prepare();
+}
 Simulation::~Simulation() = default;
+
+std::size_t Simulation::Implementation::add_link(std::size_t first, std::size_t second) {
+  for (const std::size_t body : {first, second}) maker.make(world, body);
+  world.links.push_back({first, second});
+  stages.add_link(world, world.links.size() - 1);
+  recording.make_room(world.links.size());
+  notes.make_room(world, world.links.size());
+  return world.links.size() - 1;
+}
+
+void Simulation::Implementation::meet(std::size_t first, std::size_t second) {
+  const std::size_t known = stages.neighbours.link_of(first, second);
+  const std::size_t l = known == kNone ? add_link(first, second) : known;
+  world.links[l].number = met.size();
+  met.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second)});
+  events.push_back({world.time(), "near",
+                    fmt::format("'{}' and '{}' come near each other for the first time", world.bodies[first].name,
+                                world.bodies[second].name)});
+  PairMethods::tell(world, l, events);
+}
+
+void Simulation::prepare() {
+  Implementation& self = *implementation_;
+  Neighbours& neighbours = self.stages.neighbours;
+  self.tell();
+  if (self.poses_set) self.look_around();
+  self.poses_set = false;
+  while (neighbours.missed_some() || !neighbours.strangers().empty()) {
+    for (const auto& [first, second] : neighbours.strangers()) self.meet(first, second);
+    if (neighbours.missed_some()) neighbours.make_room(self.world);
+    self.look_around();
+  }
+}
+
+std::size_t Simulation::prepare_all() {
+  Implementation& self = *implementation_;
+  for (const auto& [first, second] : self.maker.pairs_that_can_meet(self.world))
+    if (self.stages.neighbours.link_of(first, second) == kNone) self.add_link(first, second);
+  return self.world.links.size();
+}
 
 std::uint64_t Simulation::frame() const {
   return implementation_->world.frame;
@@ -30,7 +73,12 @@ std::uint64_t Simulation::frames_planned() const {
   for (const Hand& hand : world.hands) longest = std::max(longest, hand.device->duration());
   for (const auto& companion : world.companions) longest = std::max(longest, companion->duration());
   const double duration = world.parameters.duration.value_or(longest > 0 ? longest : 1.0);
-  return static_cast<std::uint64_t>(std::llround(duration / world.dt));
+  constexpr double kFramesMax = 1e9;  // what is measured of each frame has to fit into memory
+  const double frames = duration / world.dt;
+  if (!(frames <= kFramesMax))
+    fail(ErrorKind::input, "{} s are {:.3g} frames; {:.0e} at most are simulated: shorten the duration or the trace",
+         duration, frames, kFramesMax);
+  return static_cast<std::uint64_t>(std::llround(frames));
 }
 std::uint64_t Simulation::collision_frames() const {
   return implementation_->recording.totals().collision_frames;
@@ -47,12 +95,6 @@ const Totals& Simulation::totals() const {
 
 std::size_t Simulation::body_count() const {
   return implementation_->world.bodies.size();
-}
-
-int Simulation::body_index(const std::string& name) const {
-  for (std::size_t i = 0; i < implementation_->world.bodies.size(); ++i)
-    if (implementation_->world.bodies[i].name == name) return static_cast<int>(i);
-  return -1;
 }
 
 Pose Simulation::body_pose(std::size_t body) const {
@@ -82,16 +124,17 @@ void Simulation::set_body_pose(std::size_t index, const Pose& X_WB) {
     fail(ErrorKind::input, "'{}' is fixed: nothing but a moving body can be put elsewhere", body.name);
   body.rigid.set_pose(X_WB);
   body.rigid.v_C = body.rigid.omega = Vector3d::Zero();
+  implementation_->poses_set = true;
 }
 
 void Simulation::set_hybrid_enabled(std::size_t body, bool enabled) {
   implementation_->world.bodies.at(body).hybrid_enabled = enabled;
 }
 void Simulation::grasp(std::size_t device, std::size_t body) {
-  Grasping::take(implementation_->world, device, body, true, implementation_->events);
+  Grasping::take(implementation_->world, device, body, true, implementation_->notes);
 }
 void Simulation::release(std::size_t device) {
-  Grasping::let_go(implementation_->world, device, implementation_->events);
+  Grasping::let_go(implementation_->world, device, implementation_->notes);
 }
 
 void Simulation::add_clock(double rate_hz, std::function<void(double)> f) {
@@ -99,13 +142,16 @@ void Simulation::add_clock(double rate_hz, std::function<void(double)> f) {
 }
 
 void Simulation::add_event(const std::string& kind, const std::string& text) {
-  implementation_->events.push_back({time(), kind, text});
+  implementation_->tell();
+  implementation_->events.push_back({time(), shown(kind), shown(text)});
 }
 
 const std::vector<Event>& Simulation::events() const {
+  implementation_->tell();
   return implementation_->events;
 }
 void Simulation::clear_events() {
+  implementation_->tell();
   implementation_->events.clear();
 }
 
@@ -114,13 +160,25 @@ const StageTimes& Simulation::stage_ns() const {
 }
 
 void Simulation::describe(Schema& schema) const {
-  for (const Column& column : implementation_->recording.schema().columns()) schema.add(column);
+  const Schema& own = implementation_->recording.schema();
+  for (const Column& column : own.columns()) schema.add(column);
+  for (const Column& column : own.table()) schema.add(column);
+  schema.bodies = own.bodies;
+  schema.pairs_in_frame = own.pairs_in_frame;
 }
 
 void Simulation::write_row(std::byte* row) const {
   VERISIM_ASSERT(row != nullptr);
   const std::vector<std::byte>& from = implementation_->recording.row();
   std::memcpy(row, from.data(), from.size());
+}
+
+std::span<const std::byte> Simulation::table_rows() const {
+  return implementation_->recording.table_rows();
+}
+
+const std::vector<BodyPair>& Simulation::pairs() const {
+  return implementation_->met;
 }
 
 Simulation::Energy Simulation::energy() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,27 +23,35 @@ struct SimulationOptions {
 };
 
 /// The stages of a frame in their order, as /timing/stage_ns counts them.
-enum class Stage : std::uint8_t { sources, coupling, query, response, motion, render, clocks, record };
-inline constexpr std::array kStageNames = {"sources", "coupling", "query",  "response",
-                                           "motion",  "render",   "clocks", "record"};
-static_assert(kStageNames.size() == static_cast<std::size_t>(Stage::record) + 1, "every stage has its name");
+enum class Stage : std::uint8_t { sources, coupling, query, response, motion, render, clocks, record, neighbours };
+inline constexpr std::array kStageNames = {"sources", "coupling", "query",  "response",  "motion",
+                                           "render",  "clocks",   "record", "neighbours"};
+static_assert(kStageNames.size() == static_cast<std::size_t>(Stage::neighbours) + 1, "every stage has its name");
 using StageTimes = std::array<std::uint32_t, kStageNames.size()>;  ///< ns
 
 class Simulation {
  public:
-  /// Voxelizes what the scene needs (a body that can never come near another is not), places bodies and devices.
-  /// Error(input) with body and reason: no volume, voxel size, mass not finite …
-  Simulation(const Scene& scene, const SimulationOptions& options);
+  /// Places bodies and devices, and prepares the first frame. Error(input) with body and reason: no volume, voxel size,
+  /// mass not finite …
+  Simulation(Scene scene, const SimulationOptions& options);
   ~Simulation();
 
-  /// Advances from frame to frame + 1. Allocates nothing after the first call. Error(diverged) if a state stops being
-  /// finite (nothing of that frame is recorded).
+  /// Makes what the coming frame needs of bodies that came near each other: voxels, entities, links (DESIGN rule 2). An
+  /// event names each pair that does so for the first time. Between frames; allocates, and takes as long as it takes.
+  /// Error(input) with body and reason.
+  void prepare();
+  /// The same now for all pairs that can meet, so that prepare() has little to do: before a paced loop. They still meet
+  /// when they come near, with the same events and bits. Returns how many pairs these are.
+  std::size_t prepare_all();
+  /// Advances from frame to frame + 1, after prepare(). Allocates nothing if prepare() had nothing to do.
+  /// Error(diverged) if a state stops being finite (nothing of that frame is recorded).
   void step();
 
   [[nodiscard]] std::uint64_t frame() const;  ///< frames computed so far
   [[nodiscard]] double time() const;          ///< frame * dt
   [[nodiscard]] double dt() const;
-  [[nodiscard]] std::uint64_t frames_planned() const;  ///< from duration or the longest device
+  /// From duration or the longest device. Error(input) for more than a billion.
+  [[nodiscard]] std::uint64_t frames_planned() const;
   [[nodiscard]] std::uint64_t collision_frames() const;
   [[nodiscard]] const FrameCost& cost() const;  ///< of the last frame
   /// Wall clock of each stage of the last frame [ns]: measured, never read by the simulation.
@@ -51,7 +60,6 @@ class Simulation {
 
   // Bodies, by index in Scene::bodies.
   [[nodiscard]] std::size_t body_count() const;
-  [[nodiscard]] int body_index(const std::string& name) const;        ///< -1: none
   [[nodiscard]] Pose body_pose(std::size_t body) const;               ///< X_WB of the body coordinates
   [[nodiscard]] Twist body_twist(std::size_t body) const;             ///< of the centre of mass
   [[nodiscard]] Wrench body_force(std::size_t body) const;            ///< contact wrench of the last frame
@@ -67,7 +75,7 @@ class Simulation {
   /// order of adding, after the companions. `f` gets the simulated time. @pre f is not empty
   void add_clock(double rate_hz, std::function<void(double)> f);
 
-  /// An event for /events; kept until clear_events.
+  /// An event for /events; kept until clear_events. Its texts are made harmless (engine/base/text.hpp: shown).
   void add_event(const std::string& kind, const std::string& text);
   [[nodiscard]] const std::vector<Event>& events() const;
   void clear_events();
@@ -75,6 +83,10 @@ class Simulation {
   /// The columns of /state and /cost of this scene, and the last frame's values written into a row of that schema.
   void describe(Schema& schema) const;
   void write_row(std::byte* row) const;
+  /// The last frame's rows of /state/links, one behind the other.
+  [[nodiscard]] std::span<const std::byte> table_rows() const;
+  /// Pairs of bodies that have come near so far: the rows of /state/pairs.
+  [[nodiscard]] const std::vector<BodyPair>& pairs() const;
 
   /// Energy ledger since the start [J] (dynamics/ledger.hpp).
   struct Energy {

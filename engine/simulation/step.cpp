@@ -1,5 +1,6 @@
 // The order of one frame. To change it is to change every golden hash.
 #include <chrono>
+#include <utility>
 
 #include "engine/simulation/implementation.hpp"
 #include "engine/simulation/stages/rendering.hpp"
@@ -33,24 +34,29 @@ class StageTimer {
 }  // namespace
 
 void Simulation::step() {
-  auto& [events, world, cost, s, recording, left_out, stage_ns] = *implementation_;
+  prepare();
+  auto& [events, world, notes, cost, s, maker, recording, left_out, stage_ns, met, met_before, poses_set] =
+      *implementation_;
   StageTimer timer(stage_ns);
   cost = FrameCost();
+  cost.pairs_met = met.size() - std::exchange(met_before, met.size());
   s.grasping.sample(world);  // raw pose -> virtual handle
-  s.grasping.update(world, events);
+  s.grasping.update(world, notes);
   timer.done(Stage::sources);
   s.energy.enter_jump(world);
   s.response.pull(world);  // virtual coupling
   timer.done(Stage::coupling);
   s.methods.choose(world);
-  s.contacts.query(world, s.methods, cost);  // broad phase, then pointshell against voxmap
+  s.contacts.query(world, s.neighbours, s.methods, cost);  // pointshell against voxmap
   timer.done(Stage::query);
   s.response.respond(world, s.contacts, s.methods, cost);  // penalty of every contact, summed in pair order
   timer.done(Stage::response);
-  s.exact.solve(world, s.contacts, s.methods, s.response, cost);
+  s.exact.solve(world, s.neighbours, s.methods, s.response, cost);
   s.passivity.bound(world, s.contacts, s.methods, s.response, s.exact, s.energy.ledger());
   s.motion.advance(world, s.response, s.exact, s.passivity, s.energy.ledger());
   s.reactions.find(world, s.contacts, s.response, s.exact, s.motion);
+  s.tunnelling.watch(world, notes);
+  s.pair_energy.watch(world, s.contacts, s.exact, s.reactions, s.motion, notes);
   timer.done(Stage::motion);
   render(world, s.response, s.motion);  // coupling wrench -> what the hardware is told to render
   timer.done(Stage::render);
@@ -59,9 +65,13 @@ void Simulation::step() {
   world.clocks.run_due(world.frame, world.time());  // scripts: same thread, fixed order
   timer.done(Stage::clocks);
   s.energy.settle(world);
-  left_out.tell(cost, world.time(), events);
+  left_out.tell(cost, world.time(), notes);
   recording.take(world, s, cost);
   timer.done(Stage::record);
+  s.neighbours.watch(world, notes);
+  s.neighbours.look_around(world);  // broad phase, for the next frame
+  poses_set = false;
+  timer.done(Stage::neighbours);
   timer.done();
 }
 

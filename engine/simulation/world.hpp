@@ -33,9 +33,12 @@ struct Body {
   bool selectable = false;
   Bounds bounds_B;  ///< of its meshes
   Coupling coupling;
-  std::shared_ptr<const VoxelBody> voxels;        ///< null: nothing that moves can come near it
+  double voxel_size = 0;        ///< m
+  Hybrid method = hybrid::off;  ///< asked for; which one acts on a pair: hybrid_method.hpp
+
+  // constant once it is made, which is when another body first comes near (BodyMaker)
+  std::shared_ptr<const VoxelBody> voxels;        ///< null: not made yet
   std::unique_ptr<const MeshTree> mesh;           ///< null: not the way in which contacts are found
-  Hybrid method = hybrid::off;                    ///< asked for; which one acts on a pair: hybrid_method.hpp
   std::unique_ptr<const EntitySets> entities;     ///< null: no b-rep that the method could use
   std::shared_ptr<const exact::ExactBody> exact;  ///< null: not asked for, or nothing precisely known
 
@@ -45,9 +48,11 @@ struct Body {
   std::size_t held_by = kNone;  ///< hand. stages/grasping
 };
 
-/// Two bodies of which at least one can move: contact is found, answered and recorded per link.
+/// Two bodies of which at least one can move, and which came near each other: contact is found, answered and recorded
+/// per link.
 struct Link {
-  std::size_t first, second;  ///< bodies, first < second
+  std::size_t first, second;   ///< bodies, first < second
+  std::size_t number = kNone;  ///< in the order of first meetings; kNone: made in advance. Simulation::prepare
 };
 
 /// A device and what it holds. stages/grasping writes it.
@@ -63,7 +68,9 @@ struct World {
   SimulationParameters parameters;
   double dt = 0;  ///< s
   std::vector<Body> bodies;
-  std::vector<Link> links;  ///< ascending (first, second)
+  std::vector<Link> links;  ///< in the order in which they were made; grows between frames. Simulation::prepare
+  /// Links whose bodies are near in this frame, ascending (first, second): what stages look at. stages/neighbours
+  std::vector<std::size_t> near_links;
   std::vector<Hand> hands;
   std::vector<std::shared_ptr<Companion>> companions;
   Clocks clocks;
@@ -78,15 +85,19 @@ struct World {
   [[nodiscard]] bool is_implicit() const { return parameters.integrator == Integrator::implicit; }
 };
 
-/// m, by which the broad phase takes a body to be larger than its mesh: its voxels reach up to one voxel beyond that,
-/// on either side of a pair.
-[[nodiscard]] double grown_by(const Body& body);
-/// m, between the boxes around two bodies' meshes, along the world's axes.
-[[nodiscard]] double box_gap(const Body& a, const Body& b);
+/// m, by which a body is taken to be larger than its mesh: its voxels reach up to one voxel beyond that, on either side
+/// of a pair.
+[[nodiscard]] inline double grown_by(const Body& body) {
+  return body.voxel_size > 0 ? 2 * body.voxel_size : 0;  // a size that is none is refused when it is needed
+}
+/// The box along the world's axes around a body's mesh.
+[[nodiscard]] Bounds world_box(const Body& body);
+/// m, between two boxes along the same axes; 0: they meet.
+[[nodiscard]] double gap(const Bounds& a, const Bounds& b);
 
-/// Places bodies, voxelizes what something that moves can come near (DESIGN rule 2), and prepares what the methods
-/// asked for need. Adds to `events` what was asked for and cannot act. Error(input) with body and reason.
+/// Places bodies, devices and companions. Adds to `events` what was asked for and cannot act. Error(input) with body
+/// and reason. What contacts need of a body is made when something comes near (body_maker.hpp).
 /// @pre no device, companion or method is null; grasps name a device and a body
-[[nodiscard]] World make_world(const Scene& scene, unsigned threads, std::vector<Event>& events);
+[[nodiscard]] World make_world(const Scene& scene, std::vector<Event>& events);
 
 }  // namespace verisim

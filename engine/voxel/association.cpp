@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/voxel/edge_cells.hpp"
+#include "engine/voxel/limits.hpp"
 #include "engine/voxel/parallel.hpp"
 #include "engine/voxel/prepared_faces.hpp"
 #include "engine/voxel/slot_sets.hpp"
@@ -291,6 +292,12 @@ void number_sets(const std::vector<std::unique_ptr<SetsOfChunk>>& chunks, const 
   }
 }
 
+/// Is the map of this mesh? One that voxelize() makes has the origin and the size that the mesh's bounds give it.
+bool is_of(const Voxmap& map, const std::string& name, const TriangleMesh& mesh) {
+  Eigen::Vector3i bricks;
+  return grid_origin(checked_bounds(name, mesh), map.voxel_size, bricks) == map.origin && bricks == map.bricks;
+}
+
 /// The faces and edges of the part and those declared, and the sets of the latter.
 BodyFeatures entities_of(const std::string& name, const Part& part, const AssociateOptions& options) {
   BodyFeatures features{part.faces, part.edges, FeatureSets(name, options.most_sets)};
@@ -339,6 +346,8 @@ AssociationReport associate_part(const Part& part, unsigned threads, VoxelBody& 
 AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
                             VoxelBody& body) {
   VERISIM_ASSERT(body.voxmap.surface_count > 0);
+  VERISIM_ASSERT(is_whole(part.mesh));
+  VERISIM_ASSERT(is_of(body.voxmap, name, part.mesh));
   for (const Face& face : part.faces) {
     for (const std::uint32_t edge : face.edges) VERISIM_ASSERT(edge < part.edges.size());
   }

@@ -38,6 +38,9 @@ struct AssociationReport {
 AssociationReport associate(const std::string& name, const Part& part, const AssociateOptions& options,
                             VoxelBody& body);
 
+// The two below are asked for every contact. What they are asked for is not asserted here, but comes from a query,
+// which asserts that map and shell are whole.
+
 /// The set of the voxel at `slot` (block * 512 + cell, as in ContactList). Behind the surface: that of the surface
 /// voxel in front (slot_sets.hpp). 0 outside, or if association has not been run.
 [[nodiscard]] inline FeatureSetId feature_at(const VoxelBody& body, std::uint32_t slot) {

@@ -150,7 +150,10 @@ void DeclaredFeatures::extend(std::size_t face, std::span<const Place> set, cons
 }
 
 void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, FeatureSetId id) {
-  VERISIM_ASSERT(voxel < body.voxmap.surface_count && id <= size() && body.shell.voxel.empty());
+  VERISIM_ASSERT(voxel < body.voxmap.surface_count);
+  VERISIM_ASSERT(id <= size());
+  VERISIM_ASSERT(body.shell.size() == body.voxmap.surface_count);
+  VERISIM_ASSERT(of_voxel_.empty() || of_voxel_.size() == body.voxmap.surface_count);
   if (of_voxel_.empty()) of_voxel_.assign(body.voxmap.surface_count, 0);
   of_voxel_[voxel] = id;
   if (id == 0) return;
@@ -168,6 +171,8 @@ void DeclaredFeatures::assign(const VoxelBody& body, std::uint32_t voxel, Featur
 
 std::vector<EntityNumber> DeclaredFeatures::numbered(FeatureSetId id, EntityNumber first_face,
                                                      EntityNumber first_edge) const {
+  VERISIM_ASSERT(id <= size());
+  VERISIM_ASSERT(first_face + faces_.size() <= first_edge);
   std::vector<EntityNumber> entities;
   for (const Place place : sets_[id]) {
     entities.push_back(place % 2 == 0 ? first_face + place / 2 : first_edge + place / 2);

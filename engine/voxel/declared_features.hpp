@@ -16,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/voxmap.hpp"
 
 namespace verisim {
@@ -33,18 +34,23 @@ class DeclaredFeatures {
   FeatureSetId add(const std::string& owner, std::span<const Entity> set);
 
   /// Assigns a set to a surface voxel. @param id  in [1, size()], or 0 to remove a set
-  /// @pre body is the same in all calls, and voxel is below its surface_count
+  /// @pre body is the same in all calls and has a point for each surface voxel, voxel is below its surface_count, and
+  /// id <= size()
   void assign(const VoxelBody& body, std::uint32_t voxel, FeatureSetId id);
 
   [[nodiscard]] std::size_t size() const { return sets_.size() - 1; }
   /// Number of entities in a set; 0 for the empty set. @pre id <= size()
-  [[nodiscard]] std::size_t entities_in(FeatureSetId id) const { return sets_[id].size(); }
+  [[nodiscard]] std::size_t entities_in(FeatureSetId id) const {
+    VERISIM_ASSERT(id <= size());
+    return sets_[id].size();
+  }
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
   /// Sets of the surface voxels; empty, or as long as the body's surface_count.
   [[nodiscard]] const std::vector<FeatureSetId>& of_voxel() const { return of_voxel_; }
 
   /// Entities of a set, ascending, when the declared faces count from `first_face` and the edges from `first_edge`.
+  /// @pre id <= size(); the faces' numbers end where the edges' begin, or before
   [[nodiscard]] std::vector<EntityNumber> numbered(FeatureSetId id, EntityNumber first_face,
                                                    EntityNumber first_edge) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/error.hpp"
 #include "engine/voxel/voxelize.hpp"
 
 namespace verisim {
@@ -122,6 +123,7 @@ BrickMask TriangleOverlap::touched(const BoxLattice& lattice) const {
 
 bool triangle_touches_box(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& center,
                           double half_side) {
+  VERISIM_ASSERT(half_side > 0);
   const double half = half_side * (1 + kTouchTolerance);
   const std::array<Vector3d, 3> p = {a - center, b - center, c - center};
   const auto separates = [&](const Vector3d& axis) {

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/base/pose.hpp"
 #include "engine/voxel/feature_sets.hpp"
 
@@ -49,7 +50,7 @@ struct Voxmap {                            //  shape        unit  meaning
   [[nodiscard]] Layer layer_at(const Vector3d& p_B) const;
   /// Cell of a body-coordinate point, not clamped.
   [[nodiscard]] Eigen::Vector3i cell_of(const Vector3d& p_B) const;
-  [[nodiscard]] Layer layer(const Eigen::Vector3i& cell) const;
+  [[nodiscard]] Layer layer(const Eigen::Vector3i& cell) const;  ///< as layer_at, by cell
   /// Number of a surface voxel in [0, surface_count), which is also its pointshell point; -1 if it is none.
   [[nodiscard]] std::int64_t surface_number(const Eigen::Vector3i& cell) const;
   [[nodiscard]] Vector3d center_of(const Eigen::Vector3i& cell) const {
@@ -67,8 +68,10 @@ struct Voxmap {                            //  shape        unit  meaning
 }
 
 /// Number of the surface voxel that is stored at `slot` (block * 512 + cell); -1 if it is none. A few ns.
+/// @pre the map has that block
 [[nodiscard]] inline std::int64_t surface_number_of_slot(const Voxmap& map, std::uint32_t slot) {
   const std::uint32_t block = slot / kBrickCells, z = slot % kBrickCells / 64, bit = slot % 64;
+  VERISIM_ASSERT(block < map.surface_mask.size());
   const std::uint64_t word = map.surface_mask[block][z];
   if ((word >> bit & 1) == 0) return -1;
   return map.first_surface[block][z] + count_bits(word & ((std::uint64_t{1} << bit) - 1));

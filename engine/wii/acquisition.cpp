@@ -8,8 +8,6 @@
 namespace verisim::wii {
 namespace {
 
-constexpr std::array kTurns = {0.0, 0.6, -0.6};  // rad of yaw to start from: Gauss-Newton finds its way from there
-
 /// Depth-first over the assignments of blobs to the first `count` LEDs.
 struct AssignmentSearch {
   const Reading& reading;
@@ -39,11 +37,11 @@ struct AssignmentSearch {
       return pinhole.ray(b.u, b.v);
     };
     const LedPair pair{settings.leds.p_H[0], settings.leds.p_H[1]};
-    const TwoPointPose two = solve_two_points(pair, ray(0), ray(1), upright.C_LR);
+    const TwoPointPose two = solve_two_points(pair, ray(0), ray(1), upright.C_LR, settings.thresholds.forward_min);
     if (!two.found || two.cos_roll <= 0) return;
     std::array<Sighting, kLedsMax> sightings;
     const int n = sightings_of(reading, settings.leds, current, 0, sightings);
-    for (const double turn : kTurns) {
+    for (const double turn : {0.0, settings.thresholds.start_turn, -settings.thresholds.start_turn}) {
       const Quaterniond R_LH = rotation_about_z(two.cos_roll, two.sin_roll) * rotation_from_vector({0, turn, 0});
       const Quaterniond C_RL = Quaterniond(upright.C_LR).conjugate();
       const Pose start{upright.C_LR.transpose() * two.p_L, (C_RL * R_LH).normalized()};
@@ -72,7 +70,7 @@ int sightings_of(const Reading& reading, const LedLayout& leds, const Assignment
 
 Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, const Pinhole& pinhole,
                       const PoseSolver& solver, const Upright& upright) {
-  VERISIM_ASSERT(is_unit(Vector3d(upright.C_LR.row(1))));
+  for (int i = 0; i < 3; ++i) VERISIM_ASSERT(is_unit(Vector3d(upright.C_LR.row(i))));
   const int count = std::min(settings.leds.count, reading.blob_count);
   if (count < 3) return {};
   AssignmentSearch search{reading, settings, pinhole, solver, upright, count};

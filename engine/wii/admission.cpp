@@ -7,18 +7,17 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kSlackSigmas = 4;
 // A limit kept in exact arithmetic would be missed by a rounding in a reader's check: stay a little below it.
 constexpr double kWithin = 0.999;
 
 }  // namespace
 
-bool Admission::reachable(const Place& from, double t, double variance, const Vector3d& p_L) {
+bool Admission::reachable(const Place& from, double t, double variance, const Vector3d& p_L) const {
   if (!from.set) return false;
   const double way = kWithin * kSpeedMax * std::abs(t - from.t);
   const double square = (p_L - from.p_L).squaredNorm();
   if (square <= way * way) return true;  // nearly always: no square root
-  const double limit = way + kSlackSigmas * std::sqrt(variance);
+  const double limit = way + slack_sigmas_ * std::sqrt(variance);
   return square <= limit * limit;
 }
 

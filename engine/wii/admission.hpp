@@ -2,9 +2,11 @@
 #pragma once
 
 #include "engine/base/pose.hpp"
+#include "engine/wii/thresholds.hpp"
 
 namespace verisim::wii {
 
+// Limits of the task, promised by tracker.hpp: no heuristics.
 inline constexpr double kDistanceMin = 0.2;  ///< m
 inline constexpr double kDistanceMax = 5;    ///< m
 inline constexpr double kSpeedMax = 5;       ///< m/s: heads are slower
@@ -14,6 +16,7 @@ inline constexpr double kSilenceMax = 0.5;   ///< s: after that nothing is known
 class Admission {
  public:
   enum class Verdict { refused, continued, elsewhere };
+  explicit Admission(double slack_sigmas = Thresholds().slack_sigmas) : slack_sigmas_(slack_sigmas) {}
 
   /// `p_L` may be used as it comes (continued), is drawn back to what kSpeedMax allows since the last admitted one
   /// (continued; when the excess is within 4 standard deviations, measuring noise and not a jump), has jumped but is
@@ -22,7 +25,7 @@ class Admission {
   /// Times may go back a little, where two remotes report whose clocks differ: what counts is how far apart they are.
   /// @pre t is finite
   [[nodiscard]] Verdict judge(double t, double variance, Vector3d& p_L);
-  void forget() { *this = {}; }
+  void forget() { *this = Admission(slack_sigmas_); }
 
  private:
   struct Place {
@@ -30,8 +33,9 @@ class Admission {
     double t = 0;
     Vector3d p_L = Vector3d::Zero();
   };
-  [[nodiscard]] static bool reachable(const Place& from, double t, double variance, const Vector3d& p_L);
+  [[nodiscard]] bool reachable(const Place& from, double t, double variance, const Vector3d& p_L) const;
 
+  double slack_sigmas_;
   Place last_;       ///< admitted
   Place candidate_;  ///< refused as a jump, waits for a second one
 };

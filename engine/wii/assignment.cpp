@@ -10,18 +10,6 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kPairMemory = 0.25;       // s; a head needs longer to roll over
-constexpr double kPixelsPerSecond = 2000;  // 1.5 m/s at 1 m, for gaps of some reports
-constexpr double kRollCosineMin = -0.2;    // cosine of the roll: no head is tilted by more than 101 degrees
-constexpr double kSizeScale = 1;           // blob size units: a true pair differs by no more
-constexpr double kSizeLearning = 0.02;     // per report: cells run down slowly
-constexpr double kLedScale = 10;           // pixel; how near further LEDs are to where the pair alone puts them
-
-// Costs, in squared deviations over their scales.
-constexpr double kMissingLedCost = 100;  // of a further LED that is nowhere near its place
-constexpr double kSizeCostMax = 2;       // sizes of real sensors follow distance badly: a hint, no proof
-constexpr int kConfirmations = 5;        // images in a row that confirm a jump to another pair
-
 double distance_square(const Blob& a, const Blob& b) {
   return (a.u - b.u) * (a.u - b.u) + (a.v - b.v) * (a.v - b.v);
 }
@@ -73,15 +61,16 @@ PairFollower::PairFollower(const LedLayout& leds, const Pinhole& pinhole, const 
 PairFollower::Match PairFollower::solve(const Reading& reading, int first, int second, const Matrix3d& C_LR) const {
   const Blob& b0 = reading.blobs[static_cast<std::size_t>(first)];
   const Blob& b1 = reading.blobs[static_cast<std::size_t>(second)];
-  return {solve_two_points(pair_, pinhole_.ray(b0.u, b0.v), pinhole_.ray(b1.u, b1.v), C_LR), {first, second}};
+  return {solve_two_points(pair_, pinhole_.ray(b0.u, b0.v), pinhole_.ray(b1.u, b1.v), C_LR, thresholds_.forward_min),
+          {first, second}};
 }
 
 PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) {
   if (reading.blob_count < 2) return {};
-  if (followed_ && t - t_ <= kPairMemory) {
+  if (followed_ && t - t_ <= thresholds_.pair_memory) {
     Match match = continue_pair(t - t_, reading, C_LR);
     if (!match.found()) return match;
-    if (match.pose.cos_roll > kRollCosineMin) return reconsidered(reading, match, C_LR);
+    if (match.pose.cos_roll > thresholds_.upright_cosine_min) return reconsidered(reading, match, C_LR);
   }
   return acquire(reading, C_LR);
 }
@@ -94,8 +83,8 @@ PairFollower::Match PairFollower::reconsidered(const Reading& reading, const Mat
     if (cost > 0) other = least_cost_pair(reading, C_LR, true, cost);
   }
   // One image does not confirm a jump. Once confirmed, the other pair is returned until it is followed.
-  confirmations_ = other.found() ? std::min(confirmations_ + 1, kConfirmations) : 0;
-  return confirmations_ < kConfirmations ? current : other;
+  confirmations_ = other.found() ? std::min(confirmations_ + 1, thresholds_.confirmations) : 0;
+  return confirmations_ < thresholds_.confirmations ? current : other;
 }
 
 bool PairFollower::is_clutter(const Blob& blob, double distance_square_to_led) const {
@@ -105,8 +94,9 @@ bool PairFollower::is_clutter(const Blob& blob, double distance_square_to_led) c
 PairFollower::Match PairFollower::continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const {
   // The gate: half the spacing of the two blobs is further than a head moves between reports (5 m/s at any distance)
   // and nearer than a swap of the two.
-  const double way = kPixelsPerSecond * age;
-  const double gate_square = 400 + 0.25 * distance_square(last_[0], last_[1]) + way * way;
+  const double way = thresholds_.pair_speed * age;
+  const double gate_square =
+      thresholds_.pair_gate * thresholds_.pair_gate + 0.25 * distance_square(last_[0], last_[1]) + way * way;
   const auto cost = [&](int b, std::size_t led) {
     const Blob& blob = reading.blobs[static_cast<std::size_t>(b)];
     const double moved = distance_square(blob, last_[led]);
@@ -126,7 +116,7 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
 
 PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d& C_LR) const {
   // Without the yaw, the places of further LEDs are known only roughly: they choose among pairs and refuse none.
-  double cost = thresholds_.pair_cost_max + kMissingLedCost * (leds_.count - 2);
+  double cost = thresholds_.pair_cost_max + thresholds_.missing_led_cost * (leds_.count - 2);
   return least_cost_pair(reading, C_LR, false, cost);
 }
 
@@ -161,12 +151,12 @@ double PairFollower::cost_of(const Reading& reading, const Match& match, const M
   const TwoPointPose& pose = match.pose;
   const auto size = [&](std::size_t i) { return reading.blobs[static_cast<std::size_t>(match.blob[i])].size; };
   const double roll = pose.sin_roll / thresholds_.roll_sigma;
-  const double unequal = (size(0) - size(1)) / kSizeScale;
+  const double unequal = (size(0) - size(1)) / thresholds_.size_scale;
   double cost = roll * roll + unequal * unequal;
   if (size_at_1m_ > 0) {
     const double expected = std::clamp(size_at_1m_ / pose.p_L.norm(), 1.0, 15.0);
-    const double other = ((size(0) + size(1)) / 2 - expected) / kSizeScale;
-    cost += std::min(other * other, kSizeCostMax);
+    const double other = ((size(0) + size(1)) / 2 - expected) / thresholds_.size_scale;
+    cost += std::min(other * other, thresholds_.size_cost_max);
   }
   const Matrix3d R_LH = rotation_about_z(pose.cos_roll, pose.sin_roll).toRotationMatrix();
   for (std::size_t led = 2; led < static_cast<std::size_t>(leds_.count); ++led) {
@@ -178,7 +168,7 @@ double PairFollower::cost_of(const Reading& reading, const Match& match, const M
       if (b != match.blob[0] && b != match.blob[1])
         nearest = std::min(nearest,
                            distance_square(reading.blobs[static_cast<std::size_t>(b)], Blob{pixel.x(), pixel.y(), 0}));
-    cost += std::min(nearest / (kLedScale * kLedScale), kMissingLedCost);
+    cost += std::min(nearest / (thresholds_.led_scale * thresholds_.led_scale), thresholds_.missing_led_cost);
   }
   return cost;
 }
@@ -191,7 +181,7 @@ void PairFollower::follow(double t, const Reading& reading, const Match& match) 
   t_ = t;
   for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];
   const double size_at_1m = (last_[0].size + last_[1].size) / 2 * match.pose.p_L.norm();
-  size_at_1m_ = size_at_1m_ > 0 ? size_at_1m_ + kSizeLearning * (size_at_1m - size_at_1m_) : size_at_1m;
+  size_at_1m_ = size_at_1m_ > 0 ? size_at_1m_ + thresholds_.size_learning * (size_at_1m - size_at_1m_) : size_at_1m;
   clutter_count_ = 0;
   for (int b = 0; b < reading.blob_count; ++b)
     if (b != match.blob[0] && b != match.blob[1])

@@ -11,8 +11,8 @@ namespace verisim::wii {
 namespace {
 
 /// Share of heads, drawn evenly from [-x, x] x [-y, y] x [d1, d2], of which the ideal remote sees both LEDs.
-Counted count_share(const FieldOfView& fov, double spacing, double d1, double d2, std::uint64_t count,
-                    std::uint64_t seed) {
+Counted count_trackable(const FieldOfView& fov, double spacing, double d1, double d2, std::uint64_t count,
+                        std::uint64_t seed) {
   VERISIM_ASSERT(count > 0);
   VERISIM_ASSERT(is_not_negative(spacing));
   VERISIM_ASSERT(is_not_negative(d1));
@@ -32,9 +32,9 @@ Counted count_share(const FieldOfView& fov, double spacing, double d1, double d2
     s.X_WH.position = {x * (2 * uniform(0) - 1), y * (2 * uniform(1) - 1), d1 + (d2 - d1) * uniform(2)};
     seen += remote.sense(k, s).led_in_view == 3U ? 1 : 0;
   }
-  const double share = static_cast<double>(seen) / static_cast<double>(count);
+  const double fraction = static_cast<double>(seen) / static_cast<double>(count);
   const double box = 4 * x * y;
-  return {box * share, box * std::sqrt(share * (1 - share) / static_cast<double>(count))};
+  return {box * fraction, box * std::sqrt(fraction * (1 - fraction) / static_cast<double>(count))};
 }
 
 }  // namespace
@@ -60,13 +60,13 @@ double trackable_volume(const FieldOfView& fov, double spacing, double d1, doubl
 
 Counted count_trackable_area(const FieldOfView& fov, double spacing, double d, std::uint64_t count,
                              std::uint64_t seed) {
-  return count_share(fov, spacing, d, d, count, seed);
+  return count_trackable(fov, spacing, d, d, count, seed);
 }
 
 Counted count_trackable_volume(const FieldOfView& fov, double spacing, double d1, double d2, std::uint64_t count,
                                std::uint64_t seed) {
-  const Counted share = count_share(fov, spacing, d1, d2, count, seed);
-  return {share.value * (d2 - d1), share.standard_error * (d2 - d1)};
+  const Counted area = count_trackable(fov, spacing, d1, d2, count, seed);
+  return {area.value * (d2 - d1), area.standard_error * (d2 - d1)};
 }
 
 }  // namespace verisim::wii

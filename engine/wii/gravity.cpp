@@ -5,14 +5,6 @@
 #include "engine/base/contract.hpp"
 
 namespace verisim::wii {
-namespace {
-
-constexpr double kShaken = 0.3;        // g
-constexpr double kGapMax = 0.25;       // s; a rate says nothing after a longer one
-constexpr double kDirectionMin = 0.1;  // g; opposed readings can average to nothing
-
-}  // namespace
-
 Matrix3d levelling(const Vector3d& up_R) {
   VERISIM_ASSERT(is_finite(up_R));
   VERISIM_ASSERT(!up_R.isZero(0));
@@ -29,7 +21,11 @@ Matrix3d levelling(const Vector3d& up_R) {
   return C;
 }
 
-GravityFilter::GravityFilter(double time_constant) : time_constant_(time_constant) {
+GravityFilter::GravityFilter(double time_constant, const Thresholds& thresholds)
+    : time_constant_(time_constant),
+      shaken_(thresholds.shaken),
+      gap_max_(thresholds.gravity_gap),
+      direction_min_(thresholds.direction_min) {
   VERISIM_ASSERT(is_positive(time_constant));
 }
 
@@ -41,15 +37,15 @@ void GravityFilter::add(double dt, const Vector3d& force_R) {
     up_R_ = force_R;
     rate_R_.setZero();
   } else {
-    const bool shaken = std::abs(force_R.norm() - 1) > kShaken;
-    if (shaken || dt > kGapMax) rate_R_.setZero();
+    const bool shaken = std::abs(force_R.norm() - 1) > shaken_;
+    if (shaken || dt > gap_max_) rate_R_.setZero();
     if (shaken || (force_R == up_R_ && rate_R_.isZero(0))) return;
     const double keep = time_constant_ / (time_constant_ + dt);
     const Vector3d expected = up_R_ + dt * rate_R_;
     const Vector3d innovation = force_R - expected;
     const Vector3d mixed = expected + (1 - keep * keep) * innovation;
     rate_R_ += (1 - keep) / (time_constant_ + dt) * innovation;
-    const bool opposed = mixed.norm() < kDirectionMin;
+    const bool opposed = mixed.norm() < direction_min_;
     up_R_ = opposed ? force_R : mixed;
     if (opposed) rate_R_.setZero();
   }

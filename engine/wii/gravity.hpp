@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/pose.hpp"
+#include "engine/wii/thresholds.hpp"
 
 namespace verisim::wii {
 
@@ -20,7 +21,7 @@ namespace verisim::wii {
 class GravityFilter {
  public:
   /// @pre the time constant is finite and above 0
-  explicit GravityFilter(double time_constant);
+  explicit GravityFilter(double time_constant, const Thresholds& thresholds = {});
 
   /// One reading [g], `dt` seconds after the one before. Constant time, no allocation.
   /// @pre dt is finite and not negative; the reading is finite and has a direction
@@ -35,7 +36,8 @@ class GravityFilter {
   }
 
  private:
-  double time_constant_;
+  double time_constant_;                     ///< s
+  double shaken_, gap_max_, direction_min_;  ///< g, s, g: see Thresholds
   bool known_ = false;
   Vector3d up_R_ = Vector3d::UnitY();
   Vector3d rate_R_ = Vector3d::Zero();  ///< 1/s

@@ -7,7 +7,7 @@ namespace verisim::wii {
 namespace {
 
 /// A report of time k / 100 is due in the frame that ends at k / 100, however both were rounded.
-constexpr double kSameTime = 1e-9;  // s
+constexpr double kSameTime = 1e-9;  // s: rounding of times, no heuristic
 
 std::unique_ptr<ReportSource> there(std::unique_ptr<ReportSource> source) {
   VERISIM_ASSERT(source != nullptr);
@@ -42,14 +42,15 @@ void Head::advance(double t) {
 void Head::declare(Columns& columns) const {
   const std::string state = "/state/wii/" + name_;
   const std::string reports = "/cost/wii/" + name_ + "/reports";
-  const auto at_reports = [&](const char* fact, const char* units, const char* description, auto get) {
-    columns.add(state + fact, units, description, get, {}, reports);
+  const auto at_reports = [&](const char* fact, const char* units, const char* description, auto get) -> Column& {
+    return columns.add(state + fact, units, description, get, {}, reports);
   };
   at_reports("/time", "s", "when the remote took the report", [this] { return sensed_.t; });
   at_reports("/channels", "1, g, pixel", "battery, acceleration x y z, four times u v size (-1: nothing seen)",
              [this] { return sensed_.channels; });
-  at_reports("/truth_pose", "m, 1", "true head in levelled coordinates; NaN if not known",
-             [this] { return sensed_.X_LH; });
+  at_reports("/truth_pose", "m, 1", "true head in levelled coordinates; NaN if not known", [this] {
+    return sensed_.X_LH;
+  }).may_be_nan = true;
   at_reports("/estimate_pose", "m, 1", "what the tracker says, in levelled coordinates",
              [this] { return estimate_.pose; });
   at_reports("/valid", "1", "1: the tracker stands by it", [this] { return estimate_.valid; });

@@ -7,12 +7,6 @@
 #include "engine/wii/admission.hpp"
 
 namespace verisim::wii {
-namespace {
-
-constexpr double kSpinMax = 15;  // rad/s: faster than any head turns
-
-}  // namespace
-
 void HeadFilter::start(const Pose& X_RH, const Matrix6d& covariance) {
   VERISIM_ASSERT(is_placement(X_RH));
   VERISIM_ASSERT(covariance.allFinite());
@@ -28,8 +22,8 @@ void HeadFilter::start(const Pose& X_RH, const Matrix6d& covariance) {
   P_.block<3, 3>(0, 6) = covariance.block<3, 3>(0, 3);
   P_.block<3, 3>(6, 0) = covariance.block<3, 3>(3, 0);
   P_.block<3, 3>(6, 6) = covariance.block<3, 3>(3, 3);
-  P_.diagonal().segment<3>(3).setConstant(0.25);
-  P_.diagonal().segment<3>(9).setConstant(1);
+  P_.diagonal().segment<3>(3).setConstant(thresholds_.start_speed * thresholds_.start_speed);
+  P_.diagonal().segment<3>(9).setConstant(thresholds_.start_spin * thresholds_.start_spin);
 }
 
 void HeadFilter::predict(double dt, View view) {
@@ -114,7 +108,7 @@ void HeadFilter::move(const Vector12d& error) {
   turn(error.segment<3>(6));
   w_ += error.segment<3>(9);
   v_ *= std::min(1.0, kSpeedMax / std::max(v_.norm(), kSpeedMax));
-  w_ *= std::min(1.0, kSpinMax / std::max(w_.norm(), kSpinMax));
+  w_ *= std::min(1.0, thresholds_.spin_max / std::max(w_.norm(), thresholds_.spin_max));
 }
 
 void HeadFilter::turn(const Vector3d& rotation) {

@@ -10,11 +10,6 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kLostHeadMemory = 0.25;  // s that a lost head is looked for where it was
-constexpr double kOtherRemoteMax = 0.03;  // s: three reports; an older image of the other remote is no use
-constexpr double kBothSilent = 0.05;      // s without the first remote after which the second reports
-constexpr int kUnassignedReportsMax = 5;  // reports with unassigned blobs before acquisition
-
 class MultiPoint final : public TrackerBase {
  public:
   MultiPoint(const TrackerSettings& settings, std::string_view name, int remotes)
@@ -40,9 +35,10 @@ class MultiPoint final : public TrackerBase {
     if (!reports(t, remote) || !gravity(0).known()) return;
     upright_ = prior();
     found_ = {};
-    if (followed_ && std::abs(t - t_followed_) <= kLostHeadMemory) {  // the other remote's clock may be ahead
+    if (followed_ &&
+        std::abs(t - t_followed_) <= settings().thresholds.lost_head_memory) {  // the other remote's clock may be ahead
       found_ = follow(t);
-      if (unassigned_ >= kUnassignedReportsMax) reacquire(t);
+      if (unassigned_ >= settings().thresholds.unassigned_reports) reacquire(t);
     } else {
       found_ = acquire(t);
     }
@@ -55,7 +51,7 @@ class MultiPoint final : public TrackerBase {
 
   [[nodiscard]] bool reports(double t, int remote) const override {
     if (remotes_ == 1 || remote == 0) return remote == 0;
-    return t - views_[0].t > kBothSilent;
+    return t - views_[0].t > settings().thresholds.both_silent;
   }
 
   /// Yaw and pitch are near zero …
@@ -115,7 +111,7 @@ class MultiPoint final : public TrackerBase {
 
   int follow_in(double t, int remote, std::span<Sighting> sightings) const {
     const View& view = views_[static_cast<std::size_t>(remote)];
-    if (std::abs(t - view.t) > kOtherRemoteMax) return 0;
+    if (std::abs(t - view.t) > settings().thresholds.other_remote_max) return 0;
     std::array<Eigen::Vector2d, kLedsMax> then;  // where the LEDs were when this image was taken
     std::array<Eigen::Vector2d, kLedsMax> now;
     const auto leds = static_cast<std::size_t>(settings().leds.count);
@@ -143,7 +139,7 @@ class MultiPoint final : public TrackerBase {
     Pose start;
     for (int remote = 0; remote < remotes_; ++remote) {
       const auto i = static_cast<std::size_t>(remote);
-      if (std::abs(t - views_[i].t) > kOtherRemoteMax || !gravity(remote).known()) continue;
+      if (std::abs(t - views_[i].t) > settings().thresholds.other_remote_max || !gravity(remote).known()) continue;
       followers_[i].forget();
       const PairFollower::Match match = followers_[i].match(t, views_[i].reading, gravity(remote).C_LR());
       if (!match.found()) continue;
@@ -170,11 +166,11 @@ class MultiPoint final : public TrackerBase {
   void admitted(double t, bool valid) override {
     if (!valid) return;
     const double dt = t - t_followed_;
-    const bool continued = followed_ && dt <= kLostHeadMemory;
+    const bool continued = followed_ && dt <= settings().thresholds.lost_head_memory;
     if (!continued)
       velocity_R_.setZero();
     else if (dt > 1e-4)
-      velocity_R_ += 0.5 * ((found_.X_RH.position - X_RH_.position) / dt - velocity_R_);
+      velocity_R_ += settings().thresholds.velocity_gain * ((found_.X_RH.position - X_RH_.position) / dt - velocity_R_);
     velocity_R_ *= std::min(1.0, kSpeedMax / std::max(velocity_R_.norm(), 1e-9));
     X_RH_ = found_.X_RH;
     t_followed_ = t;

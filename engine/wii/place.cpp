@@ -14,12 +14,6 @@
 namespace verisim::wii {
 namespace {
 
-constexpr int kGrid = 5;               // places along each side of the room
-constexpr std::size_t kFinalists = 8;  // of the grid, improved further
-constexpr double kStepMin = 0.001;     // m
-constexpr double kAngleMin = 0.05 * kDegree;
-constexpr double kEqualCoverage = 0.001;
-
 using Parameters = std::array<double, 5>;  // x, y, z, heading, pitch
 
 Quaterniond aim(double heading, double pitch) {
@@ -27,9 +21,9 @@ Quaterniond aim(double heading, double pitch) {
 }
 
 /// Coverage in steps, so that this is an order: "nearly equal" would not be transitive.
-bool better(const Placement& a, const Placement& b) {
-  const double steps_a = std::round(a.covered / kEqualCoverage);
-  const double steps_b = std::round(b.covered / kEqualCoverage);
+bool better(const Placement& a, const Placement& b, double equal_coverage) {
+  const double steps_a = std::round(a.covered / equal_coverage);
+  const double steps_b = std::round(b.covered / equal_coverage);
   return steps_a != steps_b ? steps_a > steps_b : a.error < b.error;
 }
 
@@ -65,9 +59,9 @@ Parameters aimed_at(const Vector3d& p, const Vector3d& target) {
 Placement improve(const PlaceOptions& options, Parameters x) {
   Placement best = judge(options, x);
   const Vector3d room = options.room_max - options.room_min;
-  double step = room.maxCoeff() / kGrid;
-  double turn = 8 * kDegree;
-  while (step > kStepMin || turn > kAngleMin) {
+  double step = room.maxCoeff() / options.search.grid;
+  double turn = options.search.first_turn;
+  while (step > options.search.step_min || turn > options.search.angle_min) {
     bool helped = false;
     for (std::size_t i = 0; i < x.size(); ++i)
       for (const double sign : {1.0, -1.0}) {
@@ -78,7 +72,7 @@ Placement improve(const PlaceOptions& options, Parameters x) {
           y[i] = std::clamp(y[i], options.room_min[axis], options.room_max[axis]);
         }
         const Placement candidate = judge(options, y);
-        if (!better(candidate, best)) continue;
+        if (!better(candidate, best, options.search.equal_coverage)) continue;
         best = candidate;
         x = y;
         helped = true;
@@ -132,10 +126,11 @@ Placement best_place(const PlaceOptions& options) {
     Placement worth;
   };
   std::vector<Candidate> candidates;
-  for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
-    const Eigen::Array3i cell(i % kGrid, i / kGrid % kGrid, i / (kGrid * kGrid));
-    const Eigen::Array3d share = cell.cast<double>() / (kGrid - 1);
-    const Vector3d p = options.room_min.array() + share * (options.room_max - options.room_min).array();
+  const int grid = options.search.grid;
+  for (int i = 0; i < grid * grid * grid; ++i) {
+    const Eigen::Array3i cell(i % grid, i / grid % grid, i / (grid * grid));
+    const Eigen::Array3d fraction = cell.cast<double>() / (grid - 1);
+    const Vector3d p = options.room_min.array() + fraction * (options.room_max - options.room_min).array();
     if ((target - p).norm() < kDistanceMin) continue;
     const Parameters x = aimed_at(p, target);
     candidates.push_back({x, judge(options, x)});
@@ -143,12 +138,13 @@ Placement best_place(const PlaceOptions& options) {
   if (candidates.empty())
     fail(ErrorKind::input, "wii place: every place of the room is within {} m of the heads; allow places further away",
          kDistanceMin);
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return better(a.worth, b.worth); });
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    return better(a.worth, b.worth, options.search.equal_coverage);
+  });
   Placement best = candidates.front().worth;
-  for (std::size_t i = 0; i < std::min(kFinalists, candidates.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(options.search.finalists, candidates.size()); ++i) {
     const Placement improved = improve(options, candidates[i].x);
-    if (better(improved, best)) best = improved;
+    if (better(improved, best, options.search.equal_coverage)) best = improved;
   }
   return best;
 }

@@ -9,19 +9,30 @@
 
 namespace verisim::wii {
 
+/// How the search goes. Heuristic: wii_thresholds_test says how little the place's worth depends on it.
+struct PlaceSearch {
+  int grid = 5;                       ///< places along each side of the room: 0.25 m apart in the usual one
+  std::size_t finalists = 8;          ///< of the grid, improved further: the best of the grid need not lead to the best
+  double first_turn = 8 * kDegree;    ///< rad, first step of heading and pitch; of places it is the grid's
+  double step_min = 0.001;            ///< m, last step: nobody puts a remote more exactly
+  double angle_min = 0.05 * kDegree;  ///< rad, likewise
+  double equal_coverage = 0.001;      ///< shares of covered heads this near count as equal, and the error decides
+};
+
 struct PlaceOptions {
   std::vector<Pose> heads;                 ///< X_WH, recorded or modelled; W with +y up
   Vector3d room_min = {-0.5, -0.5, -0.5};  ///< where the remote may stand, m, W
   Vector3d room_max = {0.5, 0.5, 0.5};
   TrackerSettings tracker;                    ///< LEDs, field of view and pixel noise
   double emission_half_angle = 60 * kDegree;  ///< an LED turned further away is not counted as seen
+  PlaceSearch search = {};
 };
 
 struct Placement {
   Pose X_WR;           ///< without roll
   double heading = 0;  ///< rad about +y; 0 looks along +z of W
   double pitch = 0;    ///< rad, lens up
-  double covered = 0;  ///< share of the heads whose first two LEDs are both in view
+  double covered = 0;  ///< fraction of the heads whose first two LEDs are both in view
   double error = 0;    ///< m, expected rms error over the covered heads (yaw left out)
 };
 

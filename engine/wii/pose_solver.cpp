@@ -9,12 +9,11 @@
 namespace verisim::wii {
 namespace {
 
-constexpr int kIterations = 12;
+constexpr int kIterations = 12;  // a bound of the work: usually 2 are enough, and who needs more is not found
 // A step of a hundredth of the pose's own standard deviation changes nothing that is known. (A limit in metres would
 // wait for directions that hardly anything determines.)
 constexpr double kConverged = 1e-4;
-constexpr double kDepthMin = 0.05;  // m, in front of the lens
-constexpr double kStepMax = 0.7;    // m or rad in one step: the tangent is not trusted further
+constexpr double kDepthMin = 0.05;  // m, in front of the lens: a limit of the task, a quarter of kDistanceMin
 
 }  // namespace
 
@@ -32,7 +31,10 @@ struct PoseSolver::Normal {
 };
 
 PoseSolver::PoseSolver(const TrackerSettings& settings)
-    : pinhole_(settings.fov), weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)) {
+
+    : pinhole_(settings.fov),
+      weight_(1 / (settings.pixel_sigma * settings.pixel_sigma)),
+      step_max_(settings.thresholds.solver_step_max) {
   VERISIM_ASSERT(is_positive(settings.pixel_sigma));
   VERISIM_ASSERT(!settings.X_R1R2 || is_placement(*settings.X_R1R2));
   const Pose X_R2R1 = settings.X_R1R2.value_or(Pose()).inverse();
@@ -99,7 +101,7 @@ SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright&
     const double length = move.cwiseAbs().maxCoeff();
     if (!std::isfinite(length)) return solved;
     const bool converged = move.dot(normal.b) < kConverged;  // = move^T A move
-    if (length > kStepMax) move *= kStepMax / length;
+    if (length > step_max_) move *= step_max_ / length;
     solved.X_RH.position += move.head<3>();
     solved.X_RH.rotation = (rotation_from_vector(move.tail<3>()) * solved.X_RH.rotation).normalized();
     solved.cost = normal.cost;

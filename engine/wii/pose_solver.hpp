@@ -55,7 +55,8 @@ class PoseSolver {
                                 Normal& normal) const;
 
   Pinhole pinhole_;
-  double weight_;  ///< 1 / pixel variance
+  double weight_;    ///< 1 / pixel variance
+  double step_max_;  ///< m or rad, see Thresholds::solver_step_max
   std::array<Matrix3d, 2> R_iR_;
   std::array<Vector3d, 2> p_iR_;
 };

@@ -13,16 +13,8 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kPixelGateMax = 200;         // pixel: a fifth of the image
-constexpr double kCoastMax = 0.1;             // s without any LED that a prediction still counts as valid
-constexpr double kForgetAfter = 1;            // s without any LED after which nothing is predicted any more
-constexpr double kPinned = 1 * kDegree;       // two LEDs: yaw and pitch are held, not estimated; see report()
-constexpr double kOverturned = -0.2;          // R_LH(1,1): nobody's head
-constexpr int kUnassignedMax = 3;             // reports with unassigned blobs before acquisition
-constexpr double kSizeSigma = 0.5;            // of a blob's size, which is a whole number
-constexpr double kSizeRepeats = 50;           // reports that show the same rounding error
-constexpr double kBrightnessLearning = 0.02;  // per report: the LEDs' brightness changes with their cells, slowly
-constexpr double kRoundingPixels = 0.29;      // 1 / sqrt(12): a head at rest does not average its rounding errors away
+/// 1 / sqrt(12), the standard deviation of rounding: a head at rest does not average its rounding errors away.
+constexpr double kRoundingPixels = 0.29;
 
 class Scaat final : public TrackerBase {
  public:
@@ -42,16 +34,16 @@ class Scaat final : public TrackerBase {
     reading_ = reading;
     pair_ = {};
     const Matrix3d& C_LR = gravity(0).C_LR();
-    if (running_ && t - t_seen_ > kForgetAfter) running_ = false;
+    if (running_ && t - t_seen_ > settings().thresholds.forget_after) running_ = false;
     int seen = 0;
     if (running_) {
       filter_.predict(dt, view_);
       // After a loss the nearest blob may be another LED, or clutter: blobs are assigned anew, without the prediction.
-      const bool predictable = t - t_seen_ <= kCoastMax;
+      const bool predictable = t - t_seen_ <= settings().thresholds.coast_max;
       if (predictable) seen = correct_with(reading, C_LR, dt);
       view_ = view_of(seen);
       unassigned_ = seen < 2 && reading.blob_count >= 2 ? unassigned_ + 1 : 0;
-      lost_ = !predictable || overturned(C_LR) || unassigned_ >= kUnassignedMax;
+      lost_ = !predictable || overturned(C_LR) || unassigned_ >= settings().thresholds.unassigned_reports_filter;
       if (settings().leds.count == 2 && seen == 2) reconsider(C_LR);
     }
     if ((!running_ || lost_) && acquire(t, reading, C_LR)) seen = settings().leds.count;
@@ -75,7 +67,8 @@ class Scaat final : public TrackerBase {
     for (std::size_t led = 0; led < leds; ++led)
       if (!solver_.project(filter_.X_RH(), settings().leds.p_H[led], 0, expected[led])) return 0;
     const double spread = pinhole().fx * std::sqrt(filter_.position_variance()) / filter_.X_RH().position.z();
-    const double gate = std::min(kPixelGateMax, settings().thresholds.pixel_gate + 3 * spread);
+    const double gate = std::min(settings().thresholds.pixel_gate_max,
+                                 settings().thresholds.pixel_gate + settings().thresholds.spread_gate * spread);
     const Assignment blobs =
         without_clutter(reading, expected, nearest_assignment(reading, std::span(expected).first(leds), gate));
     const auto assigned = std::count_if(blobs.begin(), blobs.end(), [](int b) { return b >= 0; });
@@ -133,11 +126,12 @@ class Scaat final : public TrackerBase {
     const Vector3d& p = filter_.X_RH().position;
     const double distance = p.norm();
     const double size = size_at_1m_ / distance;
+    const Thresholds& n = settings().thresholds;
     filter_.correct(-size / (distance * distance) * p, Vector3d::Zero(), blob.size - size,
-                    kSizeSigma * kSizeSigma * kSizeRepeats, settings().thresholds.gate_sigmas);
+                    n.size_sigma * n.size_sigma * n.size_repeats, n.gate_sigmas);
   }
   void learn_size(const Blob& blob) {
-    size_at_1m_ += kBrightnessLearning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
+    size_at_1m_ += settings().thresholds.size_learning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
   }
 
   /// Entries (2,0) and (2,1) of R_LH are -yaw and pitch. Two LEDs see neither: both are held at zero and accounted for
@@ -145,7 +139,9 @@ class Scaat final : public TrackerBase {
   void correct_upright(const Matrix3d& C_LR, double dt) {
     const bool two = settings().leds.count == 2;
     const double repeats = settings().thresholds.upright_time / std::max(dt, 1e-6);
-    const auto variance = [&](double sigma) { return two ? kPinned * kPinned : 4 * sigma * sigma * repeats; };
+    const double pinned = settings().thresholds.pinned;
+    const double width = settings().thresholds.prior_width;
+    const auto variance = [&](double sigma) { return two ? pinned * pinned : width * width * sigma * sigma * repeats; };
     for (const int j : {0, 1}) {
       const Vector3d column_L = C_LR * filter_.R_RH().col(j);
       const Vector3d g = C_LR.transpose() * column_L.cross(Vector3d::UnitZ());
@@ -157,7 +153,7 @@ class Scaat final : public TrackerBase {
   // ---- finding the head
 
   [[nodiscard]] bool overturned(const Matrix3d& C_LR) const {
-    return (C_LR.row(1) * filter_.R_RH().col(1)).value() < kOverturned;
+    return (C_LR.row(1) * filter_.R_RH().col(1)).value() < settings().thresholds.upright_cosine_min;
   }
 
   /// A pair of which one blob is clutter moves as smoothly as a head. Only its cost tells, so it is compared with the
@@ -172,7 +168,7 @@ class Scaat final : public TrackerBase {
   void start_from(const TwoPointPose& pose, const Matrix3d& C_LR) {
     const Quaterniond C_RL = Quaterniond(C_LR).conjugate();
     TrackerSettings held = settings();
-    held.yaw_sigma = held.pitch_sigma = kPinned;
+    held.yaw_sigma = held.pitch_sigma = settings().thresholds.pinned;
     const Matrix6d c = two_led_covariance(held, pinhole(), spacing_, pose.p_L, pose.cos_roll, pose.sin_roll);
     Matrix6d turn = Matrix6d::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = C_LR.transpose();
@@ -212,7 +208,7 @@ class Scaat final : public TrackerBase {
     level(state, C_LR, settings().gravity_sigma, result.pose, result.covariance);
     result.covariance += unaveraged(result.pose);
     result.known = true;
-    result.usable = (seen > 0 || t - t_seen_ <= kCoastMax) &&
+    result.usable = (seen > 0 || t - t_seen_ <= settings().thresholds.coast_max) &&
                     result.covariance.diagonal().head<3>().maxCoeff() <
                         settings().thresholds.sigma_max * settings().thresholds.sigma_max &&
                     filter_.X_RH().position.z() > 0;

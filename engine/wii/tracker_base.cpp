@@ -7,7 +7,7 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kBackMax = 1;  // s; a clock that goes further back belongs to a new recording
+constexpr double kBackMax = 1;  // s, promised in tracker.hpp: a clock that goes further back belongs to a new recording
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -15,8 +15,10 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 TrackerBase::TrackerBase(const TrackerSettings& settings)
     : settings_(settings),
       pinhole_(settings.fov),
-      gravity_{GravityFilter(settings.gravity_time_constant), GravityFilter(settings.gravity_time_constant)},
-      last_t_{kNever, kNever} {
+      gravity_{GravityFilter(settings.gravity_time_constant, settings.thresholds),
+               GravityFilter(settings.gravity_time_constant, settings.thresholds)},
+      last_t_{kNever, kNever},
+      admission_(settings.thresholds.slack_sigmas) {
   report_.pose.position.setConstant(std::numeric_limits<double>::quiet_NaN());
   report_.pose.rotation.coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
   report_.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -6,22 +6,15 @@
 #include "engine/base/error.hpp"
 
 namespace verisim::wii {
-namespace {
-
-constexpr double kForwardMin =
-    0.2;  // least z_L of a ray: steeper ones are nearly parallel to the plane they must cross
-
-}  // namespace
-
-TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R,
-                              const Matrix3d& C_LR) {
+TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R, const Matrix3d& C_LR,
+                              double forward_min) {
   VERISIM_ASSERT(ray0_R.z() == 1);
   VERISIM_ASSERT(ray1_R.z() == 1);
   VERISIM_ASSERT(!(leds.p0_H - leds.p1_H).head<2>().isZero(0));
   TwoPointPose result;
   const Vector3d q0 = C_LR * ray0_R;
   const Vector3d q1 = C_LR * ray1_R;
-  if (q0.z() < kForwardMin || q1.z() < kForwardMin) return result;
+  if (q0.z() < forward_min || q1.z() < forward_min) return result;
 
   // The z row of the equation gives Z1 = (Z0 q0z - dz) / q1z, its x and y rows |Z0 A + B| = |d_xy|: a quadratic in Z0.
   const Vector3d d = leds.p0_H - leds.p1_H;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "engine/base/pose.hpp"
+#include "engine/wii/thresholds.hpp"
 
 namespace verisim::wii {
 
@@ -26,9 +27,10 @@ struct TwoPointPose {
 /// Solves Z0 q0 - Z1 q1 = Rz(roll) (p0_H - p1_H) with q = C_LR ray for both depths and the roll. Not found when the two
 /// rays are parallel, when the solution lies behind the lens, or when a ray rises so steeply (more than about 78
 /// degrees) that "level" says nothing about depth. About 40 flops and two square roots.
+/// @param forward_min  Thresholds::forward_min
 /// @pre rays have z = 1 (Pinhole::ray); the LEDs differ in x or y
 [[nodiscard]] TwoPointPose solve_two_points(const LedPair& leds, const Vector3d& ray0_R, const Vector3d& ray1_R,
-                                            const Matrix3d& C_LR);
+                                            const Matrix3d& C_LR, double forward_min = Thresholds().forward_min);
 
 /// The unit quaternion of Rz(angle), without trigonometry. @pre the arguments are a cosine and a sine, to rounding
 [[nodiscard]] Quaterniond rotation_about_z(double cos_angle, double sin_angle);

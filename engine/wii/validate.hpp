@@ -34,8 +34,8 @@ struct ValidationRow {
   int valid = 0;
   ErrorFigures position;      ///< m
   ErrorFigures orientation;   ///< deg
-  double availability = 0;    ///< share of valid reports among those with two or more LEDs in view, start included
-  double false_validity = 0;  ///< share of valid reports among those without any LED in view for over 0.1 s
+  double availability = 0;    ///< fraction that is valid of reports with two or more LEDs in view, start included
+  double false_validity = 0;  ///< fraction that is valid of reports without any LED in view for over 0.1 s
   double latency = 0;         ///< s by which the estimate trails the truth, -sum(e . v) / sum(v . v); 0 without motion
   /// Normalised estimation error squared of the position over its three degrees of freedom: 1 if the covariance is
   /// right, above if it promises too much. Errors repeat from report to report (rounding stands still with the head),
@@ -43,7 +43,7 @@ struct ValidationRow {
   double nees = 0;
   double nees_lower = 0;      ///< 2.5 % bound of the mean: below it the covariance is larger than the errors need
   double nees_upper = 0;      ///< 97.5 % bound of the mean
-  double within_95 = 0;       ///< share of errors inside their own 95 % ellipsoid
+  double within_95 = 0;       ///< fraction of errors inside their own 95 % ellipsoid
   bool consistent = false;    ///< nees <= nees_upper: never too sure
   int reacquired = 0;         ///< reports that said so
   double longest_return = 0;  ///< s from an LED pair's return to the next valid report, worst

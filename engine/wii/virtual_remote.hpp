@@ -99,7 +99,7 @@ struct RemoteSettings {
   // Reports
   double rate = 100;  // 1/s
   double jitter = 0;  // 0          0.2: of a period, either way, uniform; below 0.5
-  double loss = 0;    // 0          0.02: share of reports that never arrive
+  double loss = 0;    // 0          0.02: fraction of reports that never arrive
 };
 
 /// One report and, beside it, the truth.

@@ -67,6 +67,8 @@ TEST(QuantileDeathTest, OfNothingIsABrokenPromise) {
   EXPECT_DEATH(static_cast<void>(quantile(none, 0.5)), "empty");
   std::vector<double> one = {1};
   EXPECT_DEATH(static_cast<void>(quantile(one, 1.1)), "p <= 1");
+  std::vector<double> nothing = {1, std::nan("")};
+  EXPECT_DEATH(static_cast<void>(quantile(nothing, 0.5)), "std::isnan");
 }
 
 }  // namespace

@@ -121,10 +121,15 @@ class Commands(ProgramTest):
             shapes = {"/state/time": (n,), "/state/body/box/pose": (n, 7), "/state/body/box/twist": (n, 6),
                       "/state/body/box/force": (n, 6), "/state/device/hand/handle_pose": (n, 7),
                       "/state/device/hand/raw_pose": (n, 7), "/state/device/hand/wrench": (n, 6),
-                      "/state/link/plate~box/contacts": (n,), "/state/link/plate~box/constraint": (n,),
-                      "/state/link/plate~box/alignment": (n,), "/state/link/plate~box/max_penetration": (n,),
-                      "/state/link/plate~box/wrench": (n, 6), "/state/hash": (n,), "/timing/frame_ns": (n,),
-                      "/timing/period_ns": (n,), "/timing/overrun": (n,)}
+                      "/state/hash": (n,), "/timing/frame_ns": (n,), "/timing/period_ns": (n,),
+                      "/timing/overrun": (n,)}
+            m = f["/cost/links"][()].sum()
+            self.assertGreater(m, 0)
+            for fact in ("frame", "pair", "contacts", "by_voxels", "cache_hits", "cache_misses", "constraint",
+                         "alignment", "max_penetration", "wrench"):
+                shapes["/state/links/" + fact] = (m, 6) if fact == "wrench" else (m,)
+            self.assertEqual(f["/state/pairs"][()].tolist(), [(b"plate", b"box")])
+            self.assertEqual(f["/state/pairs"].dtype.names, ("first", "second"))
             for path, shape in shapes.items():
                 self.assertEqual(f[path].shape, shape, path)
             self.assertEqual(f["/state/time"][0], 0.001)

@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy
 
-from program import ProgramTest, SOURCE
+from program import ProgramTest, SOURCE, dense
 
 SEEDS = int(os.environ.get("VERISIM_SEEDS", "1"))
 NOMINALS = [10, 25, 75, 120]  # mm
@@ -35,7 +35,8 @@ class IsoFit(ProgramTest):
         d = nominal * 1e-3
         mass = 7800 * math.pi / 4 * d * d * 2 * d
         with h5py.File(run_file) as f:
-            force, press = (f[f"state/{name}/wrench"][:, :3] for name in ("link/block~pin", "device/hand"))
+            force = dense(f, "block", "pin", "wrench")[:, :3]
+            press = f["state/device/hand/wrench"][:, :3]
             twist = f["state/body/pin/twist"][()]
         norm = functools.partial(numpy.linalg.norm, axis=1)
         steps, press = norm(numpy.diff(force, axis=0)), norm(press)

@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy
 
-from program import ProgramTest, SOURCE
+from program import ProgramTest, SOURCE, dense
 
 SEEDS = range(1, 1 + int(os.environ.get("VERISIM_SEEDS", "3")))
 
@@ -20,8 +20,8 @@ class PreciseScenes(ProgramTest):
                                 *options)
         if jump is not None:
             with h5py.File(run_file) as f:
-                link, = f["state/link"]
-                force = f[f"state/link/{link}/wrench"][:, :3]
+                pair, = f["state/pairs"]
+                force = dense(f, pair["first"].decode(), pair["second"].decode(), "wrench")[:, :3]
             self.assertLessEqual(numpy.linalg.norm(numpy.diff(force, axis=0), axis=1).max(), jump, f"{settings} {seed}")
         return summary["outcome"]
 
@@ -47,7 +47,7 @@ class PreciseScenes(ProgramTest):
             self.succeed("run", scenario, "-o", self.path("run.h5"), "--set", f"hybrid={hybrid}", "--set",
                          f"height={height}")
             with h5py.File(self.path("run.h5")) as f:
-                wrench = f["state/link/block~pin/wrench"][0]
+                wrench = dense(f, "block", "pin", "wrench")[0]
             felt[hybrid] = numpy.maximum(felt.get(hybrid, 0), numpy.abs(wrench[[2, 5]]))  # along and about the axis
         self.assertGreater(felt["off"][0], 1, "N; off feels nothing either: this would prove nothing")
         self.assertGreater(felt["off"][1], 1, "N m")

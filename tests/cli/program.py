@@ -7,6 +7,8 @@ import subprocess
 import tempfile
 import unittest
 
+import numpy as np
+
 VERISIM = os.environ["VERISIM"]
 SOURCE = os.environ["VERISIM_SOURCE_DIR"]
 SHARED = os.environ["VERISIM_SHARED_DATA"]
@@ -22,6 +24,17 @@ local hand = Devices.Hand{ name = "hand", path = {
 addDevice(hand)
 grasp(hand, box)
 """
+
+
+def dense(f, first, second, fact):
+    """What a pair of bodies recorded, a row per frame: zeros where they were not near. As the README says."""
+    pairs = [(p["first"].decode(), p["second"].decode()) for p in f["state/pairs"]]
+    column = f["state/links"][fact]
+    values = np.zeros((len(f["state/time"]), *column.shape[1:]), column.dtype)
+    if (first, second) in pairs:
+        rows = f["state/links/pair"][()] == pairs.index((first, second))
+        values[f["state/links/frame"][()][rows]] = column[()][rows]
+    return values
 
 
 def turned_stl(inner, outer, height, sides=96):

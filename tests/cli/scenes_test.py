@@ -120,11 +120,11 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "48a4d45e9e7ee7ff"),
-    ("peg_in_hole_step", ["--duration", "3"], "864bdb1e9c923816"),
-    ("head_tracking", [], "ecbf4ac4a4144a3a"),
-    ("slide", [], "27a4259b53a11710"),
-    ("stack", [], "66e945f3625d6f5f"),
+    ("peg_in_hole", ["--duration", "3"], "7b958facdda2bc69"),
+    ("peg_in_hole_step", ["--duration", "3"], "2da4c2c51057d97f"),
+    ("head_tracking", [], "4a0d5865b5d4d8ff"),
+    ("slide", [], "859ccd7348b0d485"),
+    ("stack", [], "f056d4f1e8bfb9de"),
 ]
 
 if __name__ == "__main__":

@@ -151,7 +151,7 @@ class ServeThenListen(WireTest):
         self.end(listener, 130)
         self.assertGreater(len(read_csv(self.path("got.csv"))), 5)
         server.send_signal(signal.SIGTERM)
-        out, err = self.end(server, 130)
+        out, err = self.end(server, 143)
         self.assertIn("published", out)
         self.assertIn("left", err)
 

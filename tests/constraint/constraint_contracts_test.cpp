@@ -109,6 +109,7 @@ TEST(MemoDeathTest, GivesOnlyWhatItHolds) {
   const EntitySets pin = test::pin();
   const ConstraintMemo memo(block, pin, Reduction::common_freedom, {});
   EXPECT_BROKEN(memo.constraint(0), "number < constraints_known_");
+  EXPECT_BROKEN(memo.gates_of(0), "number < constraints_known_");
   EXPECT_BROKEN(memo.candidates(static_cast<std::uint32_t>(memo.candidates_max())), "number < candidates_.size()");
   EXPECT_BROKEN(block.entity(3), "number < entities_.size()");
   const auto with = [&](double Tolerances::*member) {

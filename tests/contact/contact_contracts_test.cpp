@@ -5,6 +5,7 @@
 
 #include "engine/contact/broad_phase.hpp"
 #include "engine/contact/collision_link.hpp"
+#include "engine/contact/query_simd.hpp"
 #include "tests/contact/naive_voxels.hpp"
 #include "tests/support/broken.hpp"
 
@@ -27,9 +28,13 @@ TEST(BroadPhaseDeathTest, KeepsBoxesThatAreSomewhere) {
   EXPECT_BROKEN(with({0, 0, 0}, {1, kInfinity, 1}), "is_finite(bodies[i].half_B)");
   EXPECT_BROKEN(with({0, 0, 0}, {1, -1, 1}), "bodies[i].half_B.minCoeff() >= 0");
   BroadPhase one({{Vector3d::Zero(), Vector3d::Ones(), true}});
-  EXPECT_BROKEN(one.set_pose(1, Pose()), "body < implementation_->objects.size()");
-  EXPECT_BROKEN(one.set_pose(0, kStretched), "is_placement(X_WB)");
-  EXPECT_BROKEN(one.set_pose(0, {{kNaN, 0, 0}, Quaterniond::Identity()}), "is_placement(X_WB)");
+  EXPECT_BROKEN(one.set_pose(1, Pose(), 0), "body < implementation_->boxes.size()");
+  EXPECT_BROKEN(one.set_pose(0, kStretched, 0), "is_placement(X_WB)");
+  EXPECT_BROKEN(one.set_pose(0, Pose(), -1), "is_not_negative(ahead)");
+  EXPECT_BROKEN(one.set_pose(0, {{kNaN, 0, 0}, Quaterniond::Identity()}, 0), "is_placement(X_WB)");
+  BroadPhase fixed({{Vector3d::Zero(), Vector3d::Ones(), false}});
+  static_cast<void>(fixed.find());
+  EXPECT_BROKEN(fixed.set_pose(0, Pose(), 0), "box.can_move || !implementation_->fixed_ready");
 }
 
 /// Both ways to ask, the fast and the plain one, have the same door.
@@ -74,6 +79,20 @@ INSTANTIATE_TEST_SUITE_P(Fast, QueryDeathTest,
                                               ContactList& contacts,
                                               QueryCost& cost) { query(a, b, X_AB, contacts, cost); }));
 
+TEST(AppendContactsDeathTest, GoesThroughTheShellInOrderWithRoomForAllOfIt) {
+  const Pointshell& shell = cube().shell;
+  const QueryConstants constants = make_query_constants(cube().voxmap, shell, Pose());
+  PlacedCluster cluster{};
+  cluster.end = 1;
+  const auto append = [&](ContactList contacts) { return append_contacts(constants, shell, {&cluster, 1}, contacts); };
+  EXPECT_BROKEN(append(ContactList(shell.size() - 1)), "shell.size() <= contacts.capacity()");
+  ContactList contacts(shell.size());
+  contacts.size = 1;
+  EXPECT_BROKEN(append(contacts), "contacts.size <= clusters.front().begin");
+  cluster.end = static_cast<std::uint32_t>(shell.size() + 1);
+  EXPECT_BROKEN(append(ContactList(shell.size())), "clusters.back().end <= shell.size()");
+}
+
 TEST(PenaltyDeathTest, ReadsWithinItsColumnsAndPushes) {
   ContactList contacts(8);
   const Vector3d o = Vector3d::Zero();
@@ -91,6 +110,10 @@ TEST(PenaltyDeathTest, ReadsWithinItsColumnsAndPushes) {
 TEST(CollisionLinkDeathTest, RespondsWithAStepAndALaw) {
   EXPECT_BROKEN(CollisionLink(VoxelBody(), cube()), "is_positive(first.voxmap.voxel_size)");
   EXPECT_BROKEN(CollisionLink(cube(), VoxelBody()), "is_positive(second.voxmap.voxel_size)");
+  VoxelBody shuffled = cube();
+  ASSERT_GT(shuffled.shell.clusters.size(), 1U);
+  std::swap(shuffled.shell.clusters[0], shuffled.shell.clusters[1]);
+  EXPECT_BROKEN(CollisionLink(cube(), shuffled), "are_covered(*shell_)");
 
   CollisionLink link(cube(), cube());
   LinkBody first{Pose(), Vector3d::Zero(), {}, Matrix6d::Zero(), 4};

@@ -31,7 +31,11 @@ TEST(DeviceDeathTest, GoesForwardInTime) {
   replay->sample(0, 0.5, kStep);
   replay->sample(1, 0.5, kStep);
   EXPECT_BROKEN(replay->sample(2, 0.4, kStep), "t >= last_t_");
-  EXPECT_BROKEN(replay->sample(2, kNaN, kStep), "t >= last_t_");
+  EXPECT_BROKEN(replay->sample(2, kNaN, kStep), "std::isfinite(t)");
+  EXPECT_BROKEN(replay->sample(2, 0.5, 0), "is_positive(dt)");
+  const auto moved = hand();
+  moved->sample(0, 0.5, kStep);
+  EXPECT_BROKEN(moved->sample(1, 0.4, kStep), "t >= last_t_");
   EXPECT_BROKEN(hand()->sample(0, kNaN, kStep), "std::isfinite(t)");
   EXPECT_BROKEN(hand()->sample(0, 0, 0), "is_positive(dt)");
 }

@@ -1,10 +1,16 @@
 // The doors of engine/geometry: meshes that hang together. What a file can get wrong is refused where it is read.
 #include <limits>
 
+#include "engine/geometry/analytic_surface.hpp"
 #include "engine/geometry/cad_client.hpp"
 #include "engine/geometry/merged.hpp"
 #include "engine/geometry/mesh_joints.hpp"
 #include "engine/geometry/recover.hpp"
+#include "engine/geometry/recover/canonical_mesh.hpp"
+#include "engine/geometry/recover/curve_fit.hpp"
+#include "engine/geometry/recover/fit_ambiguity.hpp"
+#include "engine/geometry/recover/regions.hpp"
+#include "engine/geometry/recover/surface_fit.hpp"
 #include "engine/geometry/self_intersection.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/support/broken.hpp"
@@ -42,6 +48,10 @@ TEST(MeshDeathTest, IsTakenWhole) {
   EXPECT_BROKEN(examine(mesh, false), "is_whole(mesh)");
   EXPECT_BROKEN(repair(mesh, notes), "is_whole(mesh)");
   EXPECT_BROKEN(find_self_intersections(mesh), "is_whole(mesh)");
+  EXPECT_BROKEN(bounds_of(mesh), "is_whole(mesh)");
+  EXPECT_BROKEN(mass_properties_of(mesh), "is_whole(mesh)");
+  EXPECT_BROKEN(area_of(mesh), "is_whole(mesh)");
+  EXPECT_BROKEN(recover::canonical(mesh), "is_whole(given)");
   Part part;
   part.mesh = mesh;
   EXPECT_BROKEN(to_tables(part), "is_whole(part.mesh)");
@@ -53,6 +63,25 @@ TEST(MeshDeathTest, IsTakenFinite) {
   part.mesh.vertices[3].z() = kNaN;
   EXPECT_BROKEN(find_self_intersections(part.mesh), "is_finite(v)");
   EXPECT_BROKEN(recover_brep(part), "is_finite(v)");
+  EXPECT_BROKEN(recover::canonical(part.mesh), "is_finite(v)");
+}
+
+TEST(MeshDeathTest, HasComponentsByItsOwnSides) {
+  TriangleMesh mesh = box().mesh;
+  const std::vector<Side> sides = sorted_sides(mesh);
+  mesh.triangles.pop_back();
+  EXPECT_BROKEN(components_of(mesh, sides, true), "sides.size() <= 3 * mesh.triangles.size()");
+  std::vector<Side> fewer = sides;
+  std::erase_if(fewer, [](const Side& side) { return side.triangle < 3; });
+  EXPECT_BROKEN(components_of(mesh, fewer, true), "side.triangle < mesh.triangles.size()");
+}
+
+TEST(SurfaceDeathTest, IsPutIntoAGridAndEndsInAnApexIfItHasOne) {
+  const auto plane = AnalyticSurface::from(Surface(Plane{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}));
+  ASSERT_TRUE(plane);
+  EXPECT_BROKEN(plane->in_grid({0, 0, 0}, 0), "is_positive(scale)");
+  EXPECT_BROKEN(plane->in_grid({0, kNaN, 0}, 1), "is_finite(origin)");
+  EXPECT_BROKEN((Meridian{.kind = SurfaceKind::cone, .radius = 1}.apex()), "tangent != 0");
 }
 
 TEST(JointsDeathTest, AreSoughtAmongOpenSidesOfTheMeshAsItIs) {
@@ -81,6 +110,34 @@ TEST(RecoverDeathTest, NeedsAPartWithoutFacesAndBounds) {
   EXPECT_BROKEN(recover_brep(part, {.round_step_max = 4}), "options.round_step_max < pinned::kPi");
 }
 
+TEST(FitDeathTest, IsThroughPointsToATolerance) {
+  using namespace recover;
+  const std::vector<Vector3d> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  EXPECT_BROKEN(plane_through({}), "!points.empty()");
+  EXPECT_BROKEN(fit(Kind::sphere, {points, {}, {}}, 0, {}), "is_positive(tolerance)");
+  EXPECT_BROKEN(fit(Kind::sphere, {points, points, {}}, 1e-6, {}), "sample.centers.size() == sample.normals.size()");
+  EXPECT_BROKEN(refit({}, points, kNaN, {}), "is_positive(tolerance)");
+  EXPECT_BROKEN(is_unambiguous({}, points, -1, {}), "is_positive(tolerance)");
+  Edge edge;
+  EXPECT_BROKEN(set_curve(edge, {}, 1e-6, {}), "points.size() >= 2");
+  edge.polyline = points;
+  EXPECT_BROKEN(set_curve(edge, {}, 0, {}), "is_positive(tolerance)");
+  EXPECT_BROKEN(set_curve(edge, {nullptr}, 1e-6, {}), "surface != nullptr");
+}
+
+TEST(RegionsDeathTest, TakeFreeTrianglesOnce) {
+  const recover::CanonicalMesh mesh = recover::canonical(box().mesh);
+  recover::Regions regions(mesh, 1e-6, 0.5, {});
+  EXPECT_BROKEN(recover::Regions(mesh, 0, 0.5, {}), "is_positive(tolerance)");
+  EXPECT_BROKEN(recover::Regions(mesh, 1e-6, 0, {}), "cos_smooth < 1");
+  EXPECT_BROKEN(regions.add_curved({}, {}), "!triangles.empty()");
+  EXPECT_BROKEN(regions.assign(0, 0), "region < all.size()");
+  regions.add_freeform({0, 1});
+  EXPECT_BROKEN(regions.add_freeform({1}), "is_free(t)");
+  EXPECT_BROKEN(regions.assign(0, 0), "is_free(triangle)");
+  EXPECT_BROKEN(regions.merge(0, 0), "region != into");
+}
+
 TEST(PartsDeathTest, AreMergedIfThereAreAnyAndMatedWithinATolerance) {
   EXPECT_BROKEN(merged({}), "!parts.empty()");
   Part half_known = box();
@@ -96,6 +153,7 @@ TEST(CadDeathTest, IsToldWholeSolidsAndHowLongItMayTake) {
   solid.kind = Solid::Kind::placed;
   solid.children = {nullptr};
   EXPECT_BROKEN(tables_of(solid), "child != nullptr");
+  EXPECT_BROKEN(solid.text(), "solid.children[i] != nullptr");
   EXPECT_BROKEN(ask_cad({}, "part.step", 0), "time_limit_s > 0");
 }
 

@@ -232,19 +232,8 @@ TEST(Recover, LeavesARingOfEightSidesItsPlanes) {
 }
 
 TEST(Recover, CallsOtherWhatFitsNothing) {
-  Part part;  // a slab whose upper side is wavy
-  constexpr std::uint32_t kSide = 24;
-  for (std::uint32_t i = 0; i <= kSide; ++i) {
-    for (std::uint32_t j = 0; j <= kSide; ++j) {
-      const double x = 0.1 * i / kSide, y = 0.1 * j / kSide;
-      part.mesh.vertices.emplace_back(x, y, 0.02 + 0.004 * std::sin(70 * x + 20 * y) * std::cos(45 * y - 13 * x));
-      part.mesh.vertices.emplace_back(x, y, 0);
-      if (i == kSide || j == kSide) continue;
-      const std::uint32_t a = 2 * (i * (kSide + 1) + j), b = a + 2 * (kSide + 1), c = b + 2, d = a + 2;
-      part.mesh.triangles.insert(part.mesh.triangles.end(), {{a, b, c}, {a, c, d}});
-      part.mesh.triangles.insert(part.mesh.triangles.end(), {{a + 1, c + 1, b + 1}, {a + 1, d + 1, c + 1}});
-    }
-  }
+  Part part;
+  part.mesh = testing::wavy_slab();
   recover_brep(part);
   const std::map<std::string, double> found = areas(part);
   EXPECT_EQ(testing::face_counts(part), (Counts{{"plane", 1}, {"other", 1}}));

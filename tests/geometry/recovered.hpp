@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -54,6 +55,24 @@ inline std::vector<std::byte> bytes_of(Part part) {
   std::vector<std::byte> bytes;
   for (const NamedArray& table : to_tables(part)) bytes.insert(bytes.end(), table.bytes.begin(), table.bytes.end());
   return bytes;
+}
+
+/// A slab 0.1 m wide whose upper side is wavy, above a plane; its sides are open.
+inline TriangleMesh wavy_slab() {
+  TriangleMesh mesh;
+  constexpr std::uint32_t kSide = 24;
+  for (std::uint32_t i = 0; i <= kSide; ++i) {
+    for (std::uint32_t j = 0; j <= kSide; ++j) {
+      const double x = 0.1 * i / kSide, y = 0.1 * j / kSide;
+      mesh.vertices.emplace_back(x, y, 0.02 + 0.004 * std::sin(70 * x + 20 * y) * std::cos(45 * y - 13 * x));
+      mesh.vertices.emplace_back(x, y, 0);
+      if (i == kSide || j == kSide) continue;
+      const std::uint32_t a = 2 * (i * (kSide + 1) + j), b = a + 2 * (kSide + 1), c = b + 2, d = a + 2;
+      mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+      mesh.triangles.insert(mesh.triangles.end(), {{a + 1, c + 1, b + 1}, {a + 1, d + 1, c + 1}});
+    }
+  }
+  return mesh;
 }
 
 /// A ring of tube, in quads of two triangles.

@@ -50,9 +50,10 @@ HOME_OF_LIBRARY = {
     # The operating system's. Sockets: a network is vrpn's alone; the CAD child process is spoken to through a pair.
     r"(netinet/(in|tcp)|arpa/inet|netdb)\.h": ["engine/vrpn/socket.cpp"],
     r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp"],
-    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp"],
+    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp"],
     r"(unistd|fcntl|sys/(stat|mman|resource))\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp",
-                                                    "engine/geometry/cad/", "engine/record/", "engine/cli/"],
+                                                    "engine/geometry/cad/", "engine/record/", "engine/cli/",
+                                                    "engine/base/user_file.cpp", "engine/base/standard_streams.cpp"],
     r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/"],
     r"(pthread|sched|sys/utsname)\.h": ["engine/cli/"],
 }
@@ -89,10 +90,24 @@ MAY_CALL_THE_C_LIBRARY = {
     "engine/geometry/cad/entities.cpp": "the CAD kernel beside it calls them too; a run file holds what it gave",
 }
 
+MAY_OPEN_FILES = {
+    "engine/base/user_file.cpp": "the place where files that a user names are opened for reading",
+    "engine/base/standard_streams.cpp": "occupies numbers of descriptors",
+    "engine/record/file_replace.cpp": "writes and marks; opens nothing that could make it wait",
+    "engine/record/heap_check.cpp": "maps run files that read_superblock has opened before",
+    "engine/record/output_place.cpp": "HDF5, of files that UserFile has opened before",
+    "engine/record/recover.cpp": "HDF5, of copies that it has made, and those copies",
+    "engine/record/run_file.cpp": "HDF5, of files that read_superblock has opened before",
+    "engine/record/run_writer.cpp": "HDF5, of files that it has made",
+    "engine/record/trace_hdf5.cpp": "HDF5, of bytes in memory and of files that it makes",
+    "engine/geometry/write_file.cpp": "writes the models that scenarios ship",
+    "engine/geometry/cad/step_file.cpp": "the kernel's readers, of files in memory",
+    "engine/cli/origin.cpp": "reads /proc/cpuinfo",
+}
+
 KEPT_FOR_TESTS = {  # functions of the engine's headers that nothing in the engine calls
     "gap_at_end": "what the normal forces of a convex step belong to",
-    "body_count": "of a simulation",
-    "body_index": "of a simulation",
+    "is_declared": "the charge of a function of scripts",
     "radius_near": "of a recovered surface",
 }
 
@@ -267,6 +282,20 @@ UNPINNED = "|".join([
 def unpinned_functions(files):
     return seen_outside(MAY_CALL_THE_C_LIBRARY, files, UNPINNED,
                         "engine/base/pinned_math.hpp gives the same bits on every CPU")
+
+
+OPENING = "|".join([
+    r"<\s*(?:fstream|stdio_ext\.h)\s*>", r"\b(?:basic_)?(?:[io]?fstream|filebuf)\b", r"\bf(?:re|d)?open(?:64)?\b",
+    r"(?<!\w)::\s*(?:open(?:at2?)?|creat)(?:64)?\b", r"\bluaL_(?:load|do)file\w*",
+    r"(?<![\w.>:])(?:open(?:at2?)?|creat)(?:64)?\s*\(\s*(?!L,)\S+,",
+    r"\bmk(?:ostemps?|stemps?|dtemp)\b", r"\bH5F(?:open|create)\b", r"[.>]\s*ReadFile\s*\(",
+    r"\b(?:opendir|(?:recursive_)?directory_iterator|scandir|nftw)\b",
+])
+
+
+def files_opened_elsewhere(files):
+    return seen_outside(MAY_OPEN_FILES, files, OPENING,
+                        "engine/base/user_file.hpp opens what a user names: a FIFO makes any other place wait")
 
 
 def functions_nobody_calls(files):

@@ -65,8 +65,7 @@ void write_until_killed(const std::string& path, Shared& shared, bool paced) {
   shared.started = true;
   for (std::uint64_t i = 0;; ++i) {
     shared.rows = i + 1;
-    fill(recorder.begin_row(), i);
-    recorder.end_row();
+    record_frame(recorder, i);
     if (paced) std::this_thread::sleep_for(microseconds(300));
   }
 }

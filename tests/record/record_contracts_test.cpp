@@ -63,6 +63,9 @@ TEST(TraceDeathTest, IsWrittenAsAWholeTable) {
   Trace trace;
   EXPECT_BROKEN(write_trace("/nowhere.csv", trace), "!trace.columns.empty()");
   trace.columns = {"t", "px"};
+  trace.values = {0, 1};
+  EXPECT_BROKEN(trace.at(1, 0), "row * columns.size() + column < values.size()");
+  EXPECT_BROKEN(trace.at(0, 2), "column < columns.size()");
   trace.values = {0};
   EXPECT_BROKEN(write_trace("/nowhere.csv", trace), "trace.values.size() % trace.columns.size() == 0");
 }

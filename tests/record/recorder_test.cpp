@@ -26,8 +26,7 @@ TEST(Recorder, AllocatesNothingInTheLoop) {
     record(recorder, 0, 1);
     const std::size_t before = allocations();
     for (std::uint64_t i = 1; i < 3000; ++i) {
-      fill(recorder.begin_row(), i);
-      recorder.end_row();
+      record_frame(recorder, i);
       recorder.event(0.001 * static_cast<double>(i), "contact", "pin on block");
     }
     EXPECT_EQ(allocations() - before, 0u);
@@ -69,10 +68,41 @@ TEST(Recorder, GivesRowsThatAreZero) {
   }
 }
 
+// A frame may have more links than the table's ring had room for at the start; the ring wraps, grows and wraps again.
+TEST(Recorder, MakesRoomForEveryNumberOfLinks) {
+  const Folder folder;
+  Schema s = schema();
+  Recorder recorder(folder.file("run.h5"), s, header(), {.frames_unflushed = 7, .ring_rows = 7, .table_rows = 1});
+  const std::size_t row_bytes = s.table_row_bytes();
+  std::vector<std::byte> expected;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const std::size_t count = i % 50 == 49 ? 40 * i : i % 11;
+    recorder.make_room(count);
+    std::vector<std::byte> rows(count * row_bytes);
+    for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<std::byte>(k * 31 + i);
+    const std::span<std::byte> row = recorder.begin_row();
+    const auto links = static_cast<std::uint32_t>(count);
+    for (const Column& c : s.columns())
+      if (c.path == "/cost/links") std::memcpy(row.data() + c.offset, &links, sizeof links);
+    recorder.add_table_rows(rows);
+    recorder.end_row();
+    expected.insert(expected.end(), rows.begin(), rows.end());
+  }
+  recorder.close({}, {});
+  const RunFile run(folder.file("run.h5"));
+  ASSERT_EQ(run.rows(), 200U);
+  for (const Column& c : run.schema().table()) {
+    const std::vector<std::byte> values = run.column(c);
+    ASSERT_EQ(values.size() * row_bytes, expected.size() * c.bytes());
+    for (std::size_t k = 0; k * row_bytes < expected.size(); ++k)
+      ASSERT_EQ(std::memcmp(&values[k * c.bytes()], &expected[k * row_bytes + c.offset], c.bytes()), 0) << c.path << k;
+  }
+}
+
 // INTERFACES section 2: paced, the loop never waits; when the file cannot keep up, that is an error, not a stall.
 TEST(Recorder, PacedSaysThatTheDiskIsTooSlow) {
   const Folder folder;
-  Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = true, .ring_rows = 16});
+  Recorder recorder(folder.file("run.h5"), schema(), header(), {.paced = true, .ring_rows = 16, .table_rows = 64});
   const Error e = error_of([&] { record(recorder, 0, 100'000); });
   EXPECT_EQ(e.kind(), ErrorKind::io);
   EXPECT_NE(std::string(e.what()).find("16 frames behind"), std::string::npos) << e.what();
@@ -295,7 +325,7 @@ TEST(Recorder, KeepsWhatWasSafeOnADiskThatIsReallyFull) {
 // Closing needs room for a copy. Without it the frames stay readable; only /summary is missing.
 TEST(Recorder, KeepsEveryRowWhenThereIsNoRoomToClose) {
   const Folder folder;
-  const SmallDisk disk(folder.file("disk"), "4m");
+  const SmallDisk disk(folder.file("disk"), "8m");
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a small tmpfs here: a full disk was not tried";
   {
     Recorder recorder(folder.file("disk/run.h5"), schema(), header(), {});

@@ -108,6 +108,106 @@ TEST(RunFile, GivesBackInputsExactly) {
   }
 }
 
+/// Bytes that look like each of HDF5's structures, with what follows: as if damaged, as if whole, cut off.
+std::vector<std::string> look_alikes() {
+  std::vector<std::string> all;
+  for (const char* signature : {"GCOL",
+                                "OHDR",
+                                "OCHK",
+                                "TREE",
+                                "HEAP",
+                                "FRHP",
+                                "FHDB",
+                                "FHIB",
+                                "FSHD",
+                                "FSSE",
+                                "BTHD",
+                                "BTLF",
+                                "BTIN",
+                                "FAHD",
+                                "FADB",
+                                "EAHD",
+                                "EAIB",
+                                "EASB",
+                                "EADB",
+                                "SNOD",
+                                "SMTB",
+                                "SMLI",
+                                "\x89HDF\r\n\x1a\n"})
+    for (const std::string& tail :
+         {std::string(), std::string("\1\0\0\0", 4), std::string("\1\0\0\0\0\x10\0\0\0\0\0\0", 12),
+          std::string("\1\0\0\0\xff\xff\xff\xff\xff\xff\xff\xff", 12), std::string(60, '\xff'), std::string(60, '\0')})
+      all.push_back(signature + tail);
+  return all;
+}
+
+std::string as_far_as_nul(const std::string& text) {
+  return text.substr(0, text.find('\0'));
+}
+
+/// A run with the bytes in its inputs, events, texts, tables and numbers.
+void write_with(const std::string& path, const std::vector<std::string>& bytes) {
+  RunHeader head = header();
+  std::string together;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    together += bytes[i];
+    head.files.push_back({as_far_as_nul(bytes[i]) + std::to_string(i), as_far_as_nul(bytes[i]), bytes[i], true});
+    head.attributes["text" + std::to_string(i)] = as_far_as_nul(bytes[i]);
+    head.attributes[as_far_as_nul(bytes[i]) + " named"] = 1.0;
+  }
+  head.attributes["parameters"] = together.substr(0, 1) + as_far_as_nul(together);
+  std::vector<float> numbers(together.size() / sizeof(float));
+  std::memcpy(numbers.data(), together.data(), numbers.size() * sizeof(float));
+  head.models = {{as_far_as_nul(bytes[0]), {{as_far_as_nul(bytes[0]), {table("GCOL", {numbers.size()}, numbers)}}}}};
+  Recorder recorder(path, schema(), head, {});
+  record(recorder, 0, 3);
+  for (const std::string& text : bytes) recorder.event(0.25, "GCOL\1", text);
+  recorder.close({{"outcome", as_far_as_nul(bytes[0])}}, {{"state_hash", as_far_as_nul(bytes[0])}});
+}
+
+// What is structure is known by what refers to it, not by its first bytes.
+TEST(RunFile, MayHoldAnyBytesThatHdf5Knows) {
+  const Folder folder;
+  const std::vector<std::string> all = look_alikes();
+  write_with(folder.file("run.h5"), all);
+  const RunFile run(folder.file("run.h5"));
+  EXPECT_TRUE(run.altered().empty());
+  ASSERT_EQ(run.header().files.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(run.header().files[i].content, all[i]);
+  ASSERT_EQ(run.events().size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(run.events()[i].text, as_far_as_nul(all[i]));
+  // As a kill would leave it, too: recovery reads the same structures.
+  const std::string left = folder.file("left.h5");
+  RunHeader head = header();
+  head.files = run.header().files;
+  {
+    Recorder recorder(left, schema(), head, {});
+    record(recorder, 0, 3);
+    for (const std::string& text : all) recorder.event(0.25, "GCOL\1", text);
+  }
+  const RunFile recovered(left);
+  EXPECT_EQ(recovered.rows(), 3U);
+  EXPECT_TRUE(recovered.altered().empty());
+}
+
+TEST(RunFile, KnowsADamagedHeapOfTexts) {
+  const Folder folder;
+  write(folder.file("run.h5"), 3);
+  const std::string whole = content_of(folder.file("run.h5"));
+  std::size_t heaps = 0;
+  for (std::size_t at = whole.find("GCOL"); at != std::string::npos; at = whole.find("GCOL", at + 1)) {
+    ++heaps;
+    for (const std::size_t byte : {0U, 4U, 8U, 15U, 24U, 31U}) {  // signature, version, size, the first object's size
+      std::string damaged = whole;
+      damaged[at + byte] = static_cast<char>(damaged[at + byte] ^ 0x41);
+      write_content(folder.file("damaged.h5"), damaged);
+      const Error e = error_of([&] { RunFile run(folder.file("damaged.h5")); });
+      EXPECT_EQ(e.kind(), ErrorKind::input) << "byte " << byte;
+    }
+  }
+  EXPECT_GT(heaps, 0U);
+}
+
 // HDF5 keeps short attributes in the object's header, which holds at most 64 kB.
 TEST(RunFile, KeepsParametersOfAnyLength) {
   const Folder folder;
@@ -133,7 +233,7 @@ TEST(RunFile, RefusesWhatIsNoRunFileAndSaysWhy) {
                                                        {"empty.h5", "is empty"},
                                                        {"text.h5", "not an HDF5 file"},
                                                        {"signature.h5", "ends after 8 bytes"},
-                                                       {"", "is not a file"}};
+                                                       {"", "is a folder"}};
   for (const auto& [name, reason] : cases) {
     const Error e = error_of([&, &file = name] { RunFile run(folder.file(file)); });
     EXPECT_EQ(e.kind(), ErrorKind::input) << name;
@@ -145,7 +245,7 @@ TEST(RunFile, RefusesWhatIsNoRunFileAndSaysWhy) {
 TEST(RunFile, RefusesALaterFormat) {
   const Folder folder;
   RunHeader head = header();
-  head.attributes["format_version"] = std::int64_t{2};
+  head.attributes["format_version"] = std::int64_t{3};
   write(folder.file("run.h5"), 1, head);
   const Error e = error_of([&] { RunFile run(folder.file("run.h5")); });
   EXPECT_EQ(e.kind(), ErrorKind::input);
@@ -165,11 +265,11 @@ TEST(RunFile, RefusesHdf5OfSomethingElse) {
 TEST(RunFile, RefusesAFileOfWhichAColumnIsMissing) {
   const Folder folder;
   RunHeader head = header();
-  head.attributes["columns"] = std::int64_t{9};
+  head.attributes["columns"] = std::int64_t{14};
   write(folder.file("run.h5"), 1, head);
   const Error e = error_of([&] { RunFile run(folder.file("run.h5")); });
   EXPECT_EQ(e.kind(), ErrorKind::input);
-  EXPECT_NE(std::string(e.what()).find("of 9 columns 8 are there"), std::string::npos) << e.what();
+  EXPECT_NE(std::string(e.what()).find("of 14 columns 13 are there"), std::string::npos) << e.what();
 }
 
 TEST(RunFile, RefusesEveryTruncation) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -38,52 +39,43 @@ class Folder {
 
 inline Schema schema() {
   Schema s;
-  s.add({.path = "/state/time",
-         .dtype = Dtype::f64,
-         .width = 1,
-         .units = "s",
-         .description = "Simulated time",
-         .enum_names = {}});
-  s.add({.path = "/state/body/pin/pose",
-         .dtype = Dtype::f64,
-         .width = 7,
-         .units = "m, 1",
-         .description = "Pose",
-         .enum_names = {}});
-  s.add({.path = "/state/link/pin~block/contacts",
-         .dtype = Dtype::u32,
-         .width = 1,
-         .units = "1",
-         .description = "Pairs",
-         .enum_names = {}});
-  s.add({.path = "/state/link/pin~block/constraint",
-         .dtype = Dtype::u8,
-         .width = 1,
-         .units = "1",
-         .description = "Strongest",
-         .enum_names = {"none", "planar", "cylindrical"}});
-  s.add({.path = "/state/wii/head/time",
-         .dtype = Dtype::f64,
-         .width = 1,
-         .units = "s",
-         .description = "At a rate of its own",
-         .enum_names = {},
-         .due = "/cost/wii/head/reports"});
-  s.add(
-      {.path = "/state/hash", .dtype = Dtype::u64, .width = 1, .units = "1", .description = "Hash", .enum_names = {}});
-  s.add({.path = "/timing/stage_ns",
-         .dtype = Dtype::u32,
-         .width = 2,
-         .units = "ns",
-         .description = "Time by stage",
-         .enum_names = {"query", "integrate"}});
-  s.add({.path = "/cost/wii/head/reports",
-         .dtype = Dtype::u32,
-         .width = 1,
-         .units = "1",
-         .description = "Reports",
-         .enum_names = {}});
+  struct Extra {
+    std::vector<std::string> names = {};
+    std::string due = {}, rows_in_frame = {};
+  };
+  const auto add = [&](const std::string& path, Dtype dtype, std::size_t width, const Extra& extra = {}) {
+    s.add({.path = path,
+           .dtype = dtype,
+           .width = width,
+           .units = path == "/state/time" ? "s" : "1",
+           .description = "What " + path + " says",
+           .enum_names = extra.names,
+           .due = extra.due,
+           .rows_in_frame = extra.rows_in_frame});
+  };
+  add("/state/time", Dtype::f64, 1);
+  add("/state/body/pin/pose", Dtype::f64, 7);
+  add("/state/body/pin/contacts", Dtype::u32, 1);
+  add("/state/body/pin/constraint", Dtype::u8, 1, {.names = {"none", "planar", "cylindrical"}});
+  add("/state/wii/head/time", Dtype::f64, 1, {.due = "/cost/wii/head/reports"});
+  add("/state/hash", Dtype::u64, 1);
+  add("/timing/stage_ns", Dtype::u32, 2, {.names = {"query", "integrate"}});
+  for (const char* count : {"/cost/wii/head/reports", "/cost/links", "/cost/pairs_met"}) add(count, Dtype::u32, 1);
+  add("/state/links/frame", Dtype::u32, 1, {.rows_in_frame = "/cost/links"});
+  add("/state/links/pair", Dtype::u32, 1, {.rows_in_frame = "/cost/links"});
+  add("/state/links/wrench", Dtype::f64, 6, {.rows_in_frame = "/cost/links"});
+  s.bodies = {"pin", "block", "größer"};
+  s.pairs_in_frame = "/cost/pairs_met";
   return s;
+}
+
+/// Pairs come near one after the other, and later part and meet again: frame i has the first i, then 0 to 3 of them.
+inline constexpr BodyPair kPairs[] = {{0, 1}, {0, 2}, {1, 2}};
+inline std::uint32_t links_in(std::uint64_t i) {
+  return static_cast<std::uint32_t>(i <= 3 ? i : i % 4);
+}
+inline bool meets_in(std::uint64_t i) {
+  return i >= 1 && i <= 3;
 }
 
 /// A frame in ten adds a row to the column that has a rate of its own; what it holds in the others is not stored.
@@ -110,6 +102,36 @@ inline void fill(std::span<std::byte> row, std::uint64_t i) {
   put(row, at, static_cast<std::uint32_t>(i));
   put(row, at, static_cast<std::uint32_t>(i + 7));
   put(row, at, has_report(i) ? 2U : 0U);
+  put(row, at, links_in(i));
+  put(row, at, meets_in(i) ? 1U : 0U);
+}
+
+/// The table's rows of a frame: no allocation, as in a loop.
+class Links {
+ public:
+  explicit Links(std::uint64_t i) : size_(links_in(i) * kRowBytes) {
+    std::size_t at = 0;
+    for (std::uint32_t pair = 0; pair < links_in(i); ++pair) {
+      put(std::span<std::byte>(bytes_), at, static_cast<std::uint32_t>(i));
+      put(std::span<std::byte>(bytes_), at, pair);
+      for (int k = 0; k < 6; ++k)
+        put(std::span<std::byte>(bytes_), at, static_cast<double>(i) + 0.25 * pair + 0.03125 * k);
+    }
+  }
+  [[nodiscard]] std::span<const std::byte> rows() const { return std::span(bytes_).first(size_); }
+
+ private:
+  static constexpr std::size_t kRowBytes = 2 * sizeof(std::uint32_t) + 6 * sizeof(double);
+  std::array<std::byte, 3 * kRowBytes> bytes_{};
+  std::size_t size_;
+};
+
+/// Frame i, whole.
+inline void record_frame(Recorder& recorder, std::uint64_t i) {
+  if (meets_in(i)) recorder.pair(kPairs[i - 1]);
+  fill(recorder.begin_row(), i);
+  recorder.add_table_rows(Links(i).rows());
+  recorder.end_row();
 }
 
 inline RunHeader header() {
@@ -119,10 +141,7 @@ inline RunHeader header() {
 }
 
 inline void record(Recorder& recorder, std::uint64_t from, std::uint64_t to) {
-  for (std::uint64_t i = from; i < to; ++i) {
-    fill(recorder.begin_row(), i);
-    recorder.end_row();
-  }
+  for (std::uint64_t i = from; i < to; ++i) record_frame(recorder, i);
 }
 
 /// Writes a whole run of `rows` rows.
@@ -132,8 +151,33 @@ inline void write(const std::string& path, std::uint64_t rows, const RunHeader& 
   recorder.close({{"frames", static_cast<std::int64_t>(rows)}}, {{"state_hash", std::string("0123456789abcdef")}});
 }
 
-/// The first row that does not hold what fill() put into it; rows() if all do.
+/// Do the table and the list of pairs hold what record_frame() put into them, and no more?
+inline bool tables_are_right(const RunFile& run) {
+  std::vector<std::byte> expected;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < run.rows(); ++i) {
+    const Links links(i);
+    expected.insert(expected.end(), links.rows().begin(), links.rows().end());
+    pairs += meets_in(i) ? 1 : 0;
+  }
+  const std::size_t row_bytes = run.schema().table_row_bytes();
+  std::vector<std::byte> stored(expected.size());
+  for (const Column& c : run.schema().table()) {
+    const std::vector<std::byte> values = run.column(c);
+    if (values.size() * row_bytes != expected.size() * c.bytes()) return false;
+    for (std::size_t row = 0; row * row_bytes < stored.size(); ++row)
+      std::memcpy(&stored[row * row_bytes + c.offset], &values[row * c.bytes()], c.bytes());
+  }
+  const std::vector<std::string> names = schema().bodies;
+  if (stored != expected || run.pairs().size() != pairs) return false;
+  for (std::size_t i = 0; i < pairs; ++i)
+    if (run.pairs()[i] != std::pair(names[kPairs[i].first], names[kPairs[i].second])) return false;
+  return true;
+}
+
+/// The first row that does not hold what fill() put into it; rows() if all do, 0 if the tables are wrong.
 inline std::size_t first_wrong_row(const RunFile& run) {
+  if (!tables_are_right(run)) return 0;
   const Schema& stored = run.schema();
   std::vector<std::byte> rows(run.rows() * stored.row_bytes());
   for (const Column& c : stored.columns()) {

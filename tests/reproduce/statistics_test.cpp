@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/random.hpp"
+#include "tests/support/broken.hpp"
 
 namespace verisim::reproduce::statistics_test {
 namespace {
@@ -61,6 +62,13 @@ TEST(Statistics, IntervalCoversTheTruthInAbout95OfAHundredCases) {
     covered += ratio.interval.first <= 1.5 && 1.5 <= ratio.interval.second ? 1 : 0;
   }
   EXPECT_NEAR(static_cast<double>(covered) / kCases, 0.95, 0.025);
+}
+
+TEST(StatisticsDeathTest, NeedTwoSamplesOrPairs) {
+  const std::vector<double> one = {1}, two = {1, 2};
+  EXPECT_BROKEN(mean_of(one), "samples.size() >= 2");
+  EXPECT_BROKEN(ratio_of(one, one), "samples.size() >= 2");
+  EXPECT_BROKEN(ratio_of(one, two), "a.size() == b.size()");
 }
 
 }  // namespace

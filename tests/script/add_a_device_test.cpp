@@ -81,9 +81,9 @@ int mirror_device(lua_State* L) {
 // Step 3: their lines in add_device_words.
 void add_toy_words(lua_State* L) {
   lua_getglobal(L, "Devices");
-  set_function<circle>(L, "Circle");
+  set_function<circle, Charge::call>(L, "Circle");
   lua_pop(L, 1);
-  set_global<mirror_device>(L, "mirrorDevice");
+  set_global<mirror_device, Charge::call>(L, "mirrorDevice");
 }
 
 /// The scene of a script that knows the toy words too, as Scenario makes it.

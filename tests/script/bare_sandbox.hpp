@@ -22,8 +22,8 @@ class BareSandbox : public Sandbox {
   void stop() override { stopped = true; }
 
   /// Runs `text`; the failure's text, or an empty string.
-  std::string failure_of(const std::string& text, std::uint64_t work = 10'000'000) {
-    allow(work);
+  std::string failure_of(const std::string& text, std::uint64_t units = 10'000'000) {
+    allow(units);
     auto failure = load(lua(), "test.lua", text);
     if (!failure) failure = call(lua(), 0, 0);
     return failure ? failure->text : std::string{};

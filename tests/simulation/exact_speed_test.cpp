@@ -2,6 +2,8 @@
 // small their voxels are.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/simulation/hybrid_scenes.hpp"
 
 namespace verisim::exact_speed_test {
@@ -44,6 +46,21 @@ TEST(FastBox, IsStoppedAtThePlateWhateverTheVoxels) {
       }
     }
   }
+}
+
+// What is looked ahead for is what a body does already and a little more: a jump of its speed says so.
+TEST(FastBox, SaysThatAContactMayBeLateWhenItsSpeedJumps) {
+  const auto late = [](double acceleration) {
+    Scene scene = flying_box(0.002);
+    scene.parameters.gravity = {0, 0, -acceleration};
+    scene.bodies[kBox].X_WB.position = {0, 0, 1};
+    Simulation simulation(std::move(scene), {});
+    for (int i = 0; i < 5; ++i) simulation.step();
+    return std::count_if(simulation.events().begin(), simulation.events().end(),
+                         [](const Event& event) { return event.kind == "late contact"; });
+  };
+  EXPECT_EQ(late(9.81), 0);
+  EXPECT_EQ(late(1e5), 1) << "once for the body";
 }
 
 }  // namespace

@@ -26,8 +26,13 @@ inline BodyDescription body_of(const std::string& name, const Solid& solid, doub
   return body;
 }
 
+/// Pushes the pin in, against the wall, and pulls it out again. A hand remembers: one for every simulation.
+inline std::shared_ptr<Device> hand_of_brep_pin() {
+  return hand_along({{0.002, 0, 0.2}, {0.006, 0.001, 0}, {0.002, 0, 0.2}}, 0.5, 0.0005);
+}
+
 /// The published script's block (0.1 m high, hole of 75 mm) and pin (0.2 m long, 70 mm), both with origins in the
-/// middle; the hand pushes the pin in, against the wall, and pulls it out again.
+/// middle.
 inline Scene brep_pin_in_hole(Hybrid hybrid, double voxel_size = 0.0045) {
   constexpr double kHeight = 0.1, kLength = 0.2;
   Scene scene;
@@ -41,7 +46,7 @@ inline Scene brep_pin_in_hole(Hybrid hybrid, double voxel_size = 0.0045) {
   pin.density = 10;
   pin.X_WB.position = {0.002, 0, 0.18};
   scene.bodies = {std::move(block), std::move(pin)};
-  scene.devices = {hand_along({{0.002, 0, 0.2}, {0.006, 0.001, 0}, {0.002, 0, 0.2}}, 0.5, 0.0005)};
+  scene.devices = {hand_of_brep_pin()};
   scene.grasps = {{0, 1}};
   return scene;
 }

@@ -28,6 +28,7 @@ Scene standing_pin(Hybrid hybrid = hybrid::restore) {
     return scene;
   }();
   Scene scene = made;
+  scene.devices = {scenes::hand_of_brep_pin()};
   scene.parameters.hybrid = hybrid;
   return scene;
 }
@@ -38,18 +39,18 @@ class Frame {
   explicit Frame(Simulation& simulation) {
     simulation.step();
     simulation.describe(schema_);
-    row_.resize(schema_.row_bytes());
-    simulation.write_row(row_.data());
+    row_.assign(simulation.table_rows().begin(), simulation.table_rows().end());
     force = simulation.body_force(kPin).force;
     torque = simulation.body_force(kPin).torque;
   }
   template <typename T>
   [[nodiscard]] T of_link(const std::string& name) const {
-    const auto& columns = schema_.columns();
-    const auto at = std::find_if(columns.begin(), columns.end(),
-                                 [&](const Column& c) { return c.path == "/state/link/block~pin/" + name; });
+    const auto& columns = schema_.table();
+    const auto at =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.path == "/state/links/" + name; });
     T value{};
     if (at == columns.end() || at->bytes() != sizeof value) throw Error(ErrorKind::usage, "no column " + name);
+    if (row_.empty()) return value;  // the bodies are not near
     std::memcpy(&value, row_.data() + at->offset, sizeof value);
     return value;
   }
@@ -62,7 +63,7 @@ class Frame {
 
  private:
   Schema schema_;
-  std::vector<std::byte> row_;
+  std::vector<std::byte> row_;  ///< of the one link
 };
 
 Frame frame_of(const Scene& scene) {

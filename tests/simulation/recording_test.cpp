@@ -16,6 +16,17 @@ class Rows {
     row_.resize(schema_.row_bytes());
   }
   void take() { simulation_.write_row(row_.data()); }
+  /// Of the frame's one link; 0 if its bodies are not near.
+  template <typename T>
+  [[nodiscard]] T of_link(const std::string& fact) const {
+    T value{};
+    for (const Column& column : schema_.table()) {
+      if (column.path != "/state/links/" + fact || simulation_.table_rows().empty()) continue;
+      EXPECT_EQ(simulation_.table_rows().size(), schema_.table_row_bytes());
+      std::memcpy(&value, simulation_.table_rows().data() + column.offset, sizeof value);
+    }
+    return value;
+  }
   template <typename T>
   [[nodiscard]] T value(const std::string& path, std::size_t i = 0) const {
     for (const Column& column : schema_.columns()) {
@@ -61,10 +72,10 @@ TEST(Recording, OfALinkAddsUpToTheTotals) {
   while (simulation.frame() < simulation.frames_planned()) {
     simulation.step();
     rows.take();
-    hits += rows.value<std::uint32_t>("/state/link/block~pin/cache_hits");
-    misses += rows.value<std::uint32_t>("/state/link/block~pin/cache_misses");
-    contacts += rows.value<std::uint32_t>("/state/link/block~pin/contacts");
-    deepest = std::max(deepest, rows.value<double>("/state/link/block~pin/max_penetration"));
+    hits += rows.of_link<std::uint32_t>("cache_hits");
+    misses += rows.of_link<std::uint32_t>("cache_misses");
+    contacts += rows.of_link<std::uint32_t>("contacts");
+    deepest = std::max(deepest, rows.of_link<double>("max_penetration"));
     ASSERT_EQ(rows.value<double>("/state/body/pin/pose", 2), simulation.body_pose(1).position.z());
     ASSERT_EQ(rows.value<double>("/state/body/pin/twist", 3), simulation.body_twist(1).angular.x());
     ASSERT_EQ(rows.value<double>("/state/body/pin/force", 4), simulation.body_force(1).torque.y());
@@ -84,12 +95,17 @@ TEST(LeftOut, IsToldOnceWithItsCounterAndARemedy) {
     const auto* counter = std::find_if(kCostCounters.begin(), kCostCounters.end(),
                                        [&](const CostCounter& c) { return c.count == count; });
     LeftOut left_out;
+    Notes notes;
+    std::vector<Event> none;
+    const World nowhere = make_world(Scene(), none);
     std::vector<Event> events;
     FrameCost cost;
-    left_out.tell(cost, 0.001, events);
+    left_out.tell(cost, 0.001, notes);
+    notes.tell(nowhere, events);
     EXPECT_TRUE(events.empty()) << "nothing was cut";
     cost.*count = 3;
-    for (const double t : {0.002, 0.003}) left_out.tell(cost, t, events);
+    for (const double t : {0.002, 0.003}) left_out.tell(cost, t, notes);
+    notes.tell(nowhere, events);
     ASSERT_EQ(events.size(), 1U) << counter->name;
     EXPECT_EQ(events[0].time, 0.002);
     EXPECT_NE(events[0].text.find(std::string("/cost/") + counter->name), std::string::npos);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/base/error.hpp"
+#include "engine/simulation/declaring.hpp"
 #include "tests/simulation/scenes.hpp"
 #include "tests/support/broken.hpp"
 
@@ -47,6 +48,15 @@ TEST(SimulationDeathTest, CallsWhatIsThere) {
   Simulation simulation(scenes::pin_in_hole(), {});
   EXPECT_BROKEN(simulation.add_clock(60, nullptr), "f != nullptr");
   EXPECT_BROKEN(simulation.write_row(nullptr), "row != nullptr");
+}
+
+TEST(DeclaringDeathTest, IsOfTheBodyThatWasVoxelized) {
+  BodyDescription body = scenes::pin_in_hole().bodies[0];
+  const Declaring voxels(body);
+  EXPECT_BROKEN(voxels.center(voxels.surface_voxels()), "voxel < surface_voxels()");
+  const Vector3d p = voxels.center(0);
+  body.voxel_size *= 2;
+  EXPECT_BROKEN(voxels.give(body, p, {}), "body.voxel_size == voxels_.voxmap.voxel_size");
 }
 
 TEST(Simulation, RefusesABodyThatStartsNowhereOrAtNoSpeed) {

@@ -72,7 +72,7 @@ namespace {
 std::vector<int> kept;  // outlives its test, so that no compiler may leave the allocation out
 
 struct Quiet {
-  std::uint64_t allocations, locks, clock_reads, frames, contacts;
+  std::uint64_t allocations, locks, clock_reads, frames, contacts, events;
 };
 
 Quiet run_counted(Simulation& simulation) {
@@ -81,9 +81,11 @@ Quiet run_counted(Simulation& simulation) {
   allocations = locks = clock_reads = 0;
   Quiet quiet{};
   while (simulation.frame() < simulation.frames_planned()) {
+    simulation.prepare();  // what has come near is made between frames
     counting = true;
     simulation.step();
     counting = false;
+    quiet.events += simulation.events().size();  // whose texts are made here, between frames
     simulation.clear_events();
     ++quiet.frames;
     quiet.contacts += simulation.cost().contacts;
@@ -125,6 +127,22 @@ TEST(StepIsQuiet, WhileBoxesFallOnEachOther) {
     EXPECT_EQ(quiet.allocations, 0U);
     EXPECT_EQ(quiet.locks, 0U);
   }
+}
+
+TEST(StepIsQuiet, WhileItHasSomethingToSay) {
+  Scene scene = scenes::pin_in_hole();
+  scene.grasps.clear();
+  HapticSamples samples;  // in the pin; the button goes down and up
+  for (int i = 0; i < 40; ++i) {
+    samples.t.push_back(0.01 * i);
+    samples.pose.push_back({{0.002, 0, 0.15}, Quaterniond::Identity()});
+    samples.button.push_back(i % 4 < 2 ? 0 : 1);
+  }
+  scene.devices = {make_replay("a stylus with a name that no text holds without memory", samples)};
+  Simulation simulation(std::move(scene), {});
+  const Quiet quiet = run_counted(simulation);
+  EXPECT_GE(quiet.events, 15U) << "nothing was said: this test would prove nothing";
+  EXPECT_EQ(quiet.allocations, 0U);
 }
 
 TEST(StepIsQuiet, WhileHeadsAreTracked) {

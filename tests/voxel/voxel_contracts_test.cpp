@@ -161,6 +161,11 @@ TEST(AssociationDeathTest, IsOfAPartWhoseFacesAndEdgesAreThere) {
   EXPECT_BROKEN(associate("part", Part(), {}, body), "body.voxmap.surface_count > 0");
   body = voxelize("part", cube(), {.voxel_size = 0.005});
   Part part;
+  part.mesh = shapes::box({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.012});
+  EXPECT_BROKEN(associate("part", part, {}, body), "is_of(body.voxmap, name, part.mesh)");
+  part.mesh = cube();
+  part.mesh.triangles[0][0] += 100;
+  EXPECT_BROKEN(associate("part", part, {}, body), "is_whole(part.mesh)");
   part.mesh = cube();
   part.faces.resize(1);
   EXPECT_BROKEN(associate("part", part, {}, body), "part.mesh.face_of_triangle.size() == part.mesh.triangles.size()");
@@ -170,6 +175,33 @@ TEST(AssociationDeathTest, IsOfAPartWhoseFacesAndEdgesAreThere) {
   part.edges.resize(1);
   part.edges[0].faces = {0};
   EXPECT_BROKEN(associate("part", part, {}, body), "face < part.faces.size()");
+}
+
+TEST(DeclaredFeaturesDeathTest, BelongToOneBodyAndAreNumberedAsAdded) {
+  const VoxelBody body = voxelize("part", cube(), {.voxel_size = 0.005});
+  DeclaredFeatures declared;
+  EXPECT_BROKEN(declared.assign(body, body.voxmap.surface_count, 0), "voxel < body.voxmap.surface_count");
+  EXPECT_BROKEN(declared.assign(body, 0, 1), "id <= size()");
+  EXPECT_BROKEN(declared.entities_in(1), "id <= size()");
+  EXPECT_BROKEN(declared.numbered(1, 0, 0), "id <= size()");
+  const VoxelBody thin = voxelize("part", cube(), {.voxel_size = 0.005, .point_spacing = 0.01});
+  EXPECT_BROKEN(declared.assign(thin, 0, 0), "body.shell.size() == body.voxmap.surface_count");
+  declared.assign(body, 0, 0);
+  const VoxelBody finer = voxelize("part", cube(), {.voxel_size = 0.004});
+  EXPECT_BROKEN(declared.assign(finer, 0, 0), "of_voxel_.empty() || of_voxel_.size() == body.voxmap.surface_count");
+  Face face;
+  face.surface = Plane{{0, 0, 0.01}, {0, 0, 1}, {1, 0, 0}};
+  const std::array<DeclaredFeatures::Entity, 1> set = {face};
+  const FeatureSetId id = declared.add("part", set);
+  EXPECT_BROKEN(declared.numbered(id, 3, 3), "first_face + faces_.size() <= first_edge");
+}
+
+TEST(VoxmapDeathTest, IsAskedForSlotsThatItHas) {
+  const Stages s;
+  const auto beyond = static_cast<std::uint32_t>(s.map.surface_mask.size() * kBrickCells);
+  EXPECT_BROKEN(surface_number_of_slot(s.map, beyond), "block < map.surface_mask.size()");
+  const Vector3d o = Vector3d::Zero();
+  EXPECT_BROKEN(triangle_touches_box(o, o, o, o, 0), "half_side > 0");
 }
 
 TEST(CrossingsDeathTest, AreCountedForwardAlongARowOfTheGrid) {

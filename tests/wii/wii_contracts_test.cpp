@@ -114,7 +114,7 @@ TEST(PoseSolverDeathTest, FitsSightingsOfTwoRemotes) {
   Upright upright;
   upright.C_LR.setZero();
   EXPECT_BROKEN(acquire_head(two_blobs(), {}, Pinhole{FieldOfView()}, solver, upright),
-                "is_unit(Vector3d(upright.C_LR.row(1)))");
+                "is_unit(Vector3d(upright.C_LR.row(i)))");
 }
 
 TEST(HeadFilterDeathTest, StartsFromAPoseAndIsCorrectedByMeasurements) {

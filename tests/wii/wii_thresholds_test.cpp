@@ -2,6 +2,11 @@
 // where it speaks. "Worse" is the rms error of the position against that with the numbers as they are.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <variant>
+
+#include "engine/wii/gravity.hpp"
+#include "engine/wii/place.hpp"
 #include "engine/wii/validate.hpp"
 
 namespace verisim::wii::wii_thresholds_test {
@@ -9,7 +14,7 @@ namespace {
 
 struct Number {
   const char* name;
-  double Thresholds::*member;
+  std::variant<double Thresholds::*, int Thresholds::*> member;
   const char* tracker;
   const char* trajectory;
   const char* sensor;
@@ -18,7 +23,12 @@ struct Number {
 
 ValidationRow row(const Number& n, double factor) {
   ValidationOptions options;
-  options.tracker.thresholds.*n.member *= factor;
+  std::visit(
+      [&](auto member) {
+        auto& number = options.tracker.thresholds.*member;
+        number = static_cast<std::remove_reference_t<decltype(number)>>(factor * number);
+      },
+      n.member);
   options.measure_time = false;
   return validate_one(n.tracker, trajectory(n.trajectory), sensor_case(n.sensor), options);
 }
@@ -49,7 +59,20 @@ INSTANTIATE_TEST_SUITE_P(
         Number{"prior_width", &Thresholds::prior_width, "three-led", "natural-yaw", "wiimote", 1.05},
         Number{"roll_sigma", &Thresholds::roll_sigma, "three-led", "tilted", "wiimote", 1.05},
         Number{"turn_rate", &Thresholds::turn_rate, "three-led", "dropout-one", "wiimote", 1.5},
-        Number{"still_known", &Thresholds::still_known, "three-led", "dropout-one", "wiimote", 1.15}),
+        Number{"still_known", &Thresholds::still_known, "three-led", "dropout-one", "wiimote", 1.15},
+        Number{"start_speed", &Thresholds::start_speed, "scaat", "dropout-both", "lamp", 1.01},
+        Number{"start_spin", &Thresholds::start_spin, "scaat/3", "static", "lamp", 1.01},
+        Number{"velocity_gain", &Thresholds::velocity_gain, "stereo", "swap", "wiimote", 1.12},
+        Number{"pair_speed", &Thresholds::pair_speed, "scaat", "dropout-one", "lamp", 1.2},
+        Number{"lost_head_memory", &Thresholds::lost_head_memory, "stereo", "dropout-one", "wiimote", 1.01},
+        Number{"size_learning", &Thresholds::size_learning, "scaat", "dropout-one", "wiimote", 1.02},
+        Number{"size_sigma", &Thresholds::size_sigma, "scaat", "dropout-one", "wiimote", 1.4},
+        Number{"size_repeats", &Thresholds::size_repeats, "scaat", "dropout-one", "wiimote", 1.15},
+        Number{"confirmations", &Thresholds::confirmations, "scaat", "dropout-one", "lamp", 1.07},
+        Number{"unassigned_reports", &Thresholds::unassigned_reports, "stereo", "natural-yaw", "lamp", 1.06},
+        Number{"other_remote_max", &Thresholds::other_remote_max, "stereo", "natural", "wiimote", 1.03},
+        Number{"both_silent", &Thresholds::both_silent, "stereo", "natural", "wiimote", 1.01},
+        Number{"pinned", &Thresholds::pinned, "scaat", "swap", "wiimote", 1.01}),
     [](const auto& number) { return std::string(number.param.name); });
 
 TEST_P(WiiThresholds, HardlyChangeTheErrorAndTheAvailability) {
@@ -62,6 +85,129 @@ TEST_P(WiiThresholds, HardlyChangeTheErrorAndTheAvailability) {
     EXPECT_GE(varied.position.rms, usual.position.rms / n.worse_max) << "the number is not the best one by far";
     EXPECT_GE(varied.availability, usual.availability - 0.02);
     EXPECT_LE(varied.false_validity, usual.false_validity + 0.02);
+  }
+}
+
+/// A number that keeps out what heads do not do. Doubled or halved it changes nothing; `reached` times it does, in the
+/// same scene: the scene asks for it.
+struct Guard : Number {
+  double reached;
+};
+class WiiGuards : public ::testing::TestWithParam<Guard> {};
+INSTANTIATE_TEST_SUITE_P(
+    HalfAndDouble, WiiGuards,
+    ::testing::Values(
+        Guard{{"spin_max", &Thresholds::spin_max, "scaat/3", "dropout-one", "lamp", 1}, 0.001},
+        Guard{{"pair_gate", &Thresholds::pair_gate, "geometric", "dropout-one", "lamp", 1}, 10},
+        Guard{{"pair_memory", &Thresholds::pair_memory, "geometric", "natural-yaw", "wiimote", 1}, 0.001},
+        Guard{{"upright_cosine_min", &Thresholds::upright_cosine_min, "geometric", "natural-yaw", "wiimote", 1}, -4.95},
+        Guard{{"unassigned_reports_filter", &Thresholds::unassigned_reports_filter, "scaat", "dropout-one", "lamp", 1},
+              0.001},
+        Guard{{"start_turn", &Thresholds::start_turn, "three-led", "dropout-one", "lamp", 1}, 4},
+        Guard{{"solver_step_max", &Thresholds::solver_step_max, "three-led", "dropout-one", "lamp", 1}, 0.001},
+        Guard{{"forward_min", &Thresholds::forward_min, "geometric", "dropout-one", "lamp", 1}, 10},
+        Guard{{"shaken", &Thresholds::shaken, "geometric", "dropout-one", "wiimote", 1}, 0.001},
+        Guard{{"gravity_gap", &Thresholds::gravity_gap, "geometric", "moving-remote", "lamp", 1}, 0.001},
+        Guard{{"direction_min", &Thresholds::direction_min, "geometric", "moving-remote", "lamp", 1}, 10},
+        Guard{{"slack_sigmas", &Thresholds::slack_sigmas, "geometric", "dropout-one", "lamp", 1}, 10},
+        Guard{{"forget_after", &Thresholds::forget_after, "scaat", "dropout-both", "lamp", 1}, 0.001}),
+    [](const auto& number) { return std::string(number.param.name); });
+
+TEST_P(WiiGuards, ChangeNothingUntilTheyKeepOutWhatHeadsDo) {
+  const ValidationRow usual = row(GetParam(), 1);
+  for (const double factor : {0.5, 2.0}) {
+    const ValidationRow varied = row(GetParam(), factor);
+    EXPECT_NEAR(varied.position.rms, usual.position.rms, 1e-4 * usual.position.rms) << factor;
+    EXPECT_EQ(varied.valid, usual.valid) << factor;
+  }
+  const ValidationRow reached = row(GetParam(), GetParam().reached);
+  const bool as_usual = std::abs(reached.position.rms - usual.position.rms) <= 1e-3 * usual.position.rms;
+  EXPECT_FALSE(as_usual && reached.valid == usual.valid) << "nothing asks for this number here";
+}
+
+// Two numbers have one good side only. A lamp that burns while all LEDs are dark is taken for a head of three LEDs once
+// the filter's gate is wide enough to reach it, and for one of a pair once sizes count for four times as much.
+TEST(WiiThresholdsWithALamp, HaveASideOnWhichTheyFail) {
+  const auto worse = [](const Number& n, double factor) {
+    return row(n, factor).position.rms / row(n, 1).position.rms;
+  };
+  const Number gate{"pixel_gate_max", &Thresholds::pixel_gate_max, "scaat/3", "dropout-both", "lamp", 1};
+  EXPECT_LE(worse(gate, 0.5), 1.05);
+  EXPECT_GT(worse(gate, 2), 10);
+  const Number size{"size_scale", &Thresholds::size_scale, "stereo", "dropout-one", "lamp", 1};
+  EXPECT_GT(worse(size, 0.5), 10);
+  EXPECT_LE(worse(size, 2), 1.05);
+}
+
+// coast_max: what is valid for 0.1 s without any LED is, doubled, valid for 0.1 s more of each half second.
+TEST(WiiThresholdsWithoutLeds, CoastingLongerIsValidForAsMuchLonger) {
+  const Number coast{"coast_max", &Thresholds::coast_max, "scaat", "dropout-both", "wiimote", 1};
+  const ValidationRow usual = row(coast, 1), shorter = row(coast, 0.5), longer = row(coast, 2);
+  EXPECT_LE(shorter.false_validity, usual.false_validity);
+  EXPECT_NEAR(longer.false_validity - usual.false_validity, 0.22, 0.05);
+  EXPECT_LE(longer.position.rms, 1.2 * usual.position.rms);
+}
+
+/// How far a level remote seems tilted [rad] after a second at rest, a shake of `force` to the side for `shaken_for`
+/// seconds, and 0.1 s of rest.
+double tilt_after_shake(double factor, double Thresholds::*member, double force, double shaken_for) {
+  Thresholds thresholds;
+  thresholds.*member *= factor;
+  GravityFilter filter(0.1, thresholds);
+  for (int i = 0; i < 100; ++i) filter.add(0.01, {0, 1, 0});
+  for (double t = 0; t < shaken_for; t += 0.01) filter.add(0.01, {force, 1, 0});
+  double farthest = std::abs(filter.C_LR()(0, 1));
+  for (int i = 0; i < 10; ++i) {
+    filter.add(0.01, {0, 1, 0});
+    farthest = std::max(farthest, std::abs(filter.C_LR()(0, 1)));
+  }
+  return farthest;
+}
+
+// 1 g to the side makes 1.41 g: left out at 0.3 g and at half of that, but 0.6 g or more off would be seen. 0.7 g makes
+// 1.22 g: within 0.3 g of 1, so the remote seems tilted, as it does at 0.6; half of it keeps it level.
+TEST(WiiGravityThresholds, ShakenSaysWhichReadingsAreGravity) {
+  for (const double factor : {0.5, 1.0}) EXPECT_LE(tilt_after_shake(factor, &Thresholds::shaken, 1, 0.05), 1e-12);
+  EXPECT_GT(tilt_after_shake(2, &Thresholds::shaken, 1, 0.05), 0.3);
+  EXPECT_LE(tilt_after_shake(0.5, &Thresholds::shaken, 0.7, 0.05), 1e-12);
+  for (const double factor : {1.0, 2.0}) EXPECT_GT(tilt_after_shake(factor, &Thresholds::shaken, 0.7, 0.05), 0.2);
+}
+
+/// The search for a place, each of its numbers halved and doubled in front of a seated user.
+struct SearchNumber {
+  const char* name;
+  void (*scale)(PlaceSearch&, double factor);
+};
+class WiiPlaceSearch : public ::testing::TestWithParam<SearchNumber> {};
+INSTANTIATE_TEST_SUITE_P(
+    HalfAndDouble, WiiPlaceSearch,
+    ::testing::Values(SearchNumber{"grid", [](PlaceSearch& s, double f) { s.grid = static_cast<int>(f * s.grid); }},
+                      SearchNumber{"finalists",
+                                   [](PlaceSearch& s, double f) {
+                                     s.finalists = static_cast<std::size_t>(f * static_cast<double>(s.finalists));
+                                   }},
+                      SearchNumber{"first_turn", [](PlaceSearch& s, double f) { s.first_turn *= f; }},
+                      SearchNumber{"step_min", [](PlaceSearch& s, double f) { s.step_min *= f; }},
+                      SearchNumber{"angle_min", [](PlaceSearch& s, double f) { s.angle_min *= f; }},
+                      SearchNumber{"equal_coverage", [](PlaceSearch& s, double f) { s.equal_coverage *= f; }}),
+    [](const auto& number) { return std::string(number.param.name); });
+
+PlaceOptions in_front_of_a_screen() {
+  PlaceOptions options;
+  options.heads = modelled_heads({0, 1.2, 1}, {0, 1.2, 0}, {0.15, 0.05, 0.1}, 200, 1);
+  options.room_min = {-0.6, 0.7, -0.3};
+  options.room_max = {0.6, 1.7, 0.1};
+  return options;
+}
+
+TEST_P(WiiPlaceSearch, HardlyChangesWhatThePlaceIsWorth) {
+  static const Placement usual = best_place(in_front_of_a_screen());
+  for (const double factor : {0.5, 2.0}) {
+    PlaceOptions options = in_front_of_a_screen();
+    GetParam().scale(options.search, factor);
+    const Placement place = best_place(options);
+    EXPECT_NEAR(place.covered, usual.covered, 0.005) << factor;
+    EXPECT_NEAR(place.error, usual.error, 0.05 * usual.error) << factor;
   }
 }
 

@@ -18,6 +18,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "engine/base/standard_streams.hpp"
 #include "engine/geometry/cad/kernel.hpp"
 #include "engine/geometry/message.hpp"
 
@@ -139,6 +140,7 @@ void limit_harm() {
 }  // namespace
 
 int main() {
+  occupy_standard_streams();
   limit_harm();
   // What the kernel prints must not get into the answer.
   const int out = dup(STDOUT_FILENO);

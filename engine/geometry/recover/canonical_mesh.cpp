@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/geometry/mesh_edges.hpp"
 
 namespace verisim::recover {
@@ -58,6 +60,8 @@ void join_neighbors(CanonicalMesh& mesh) {
 }  // namespace
 
 CanonicalMesh canonical(const TriangleMesh& given) {
+  VERISIM_ASSERT(is_whole(given));
+  for (const Vector3d& v : given.vertices) VERISIM_ASSERT(is_finite(v));  // they are sorted
   CanonicalMesh mesh;
   const std::vector<std::uint32_t> number = sort_vertices(given.vertices, mesh);
   std::vector<std::array<std::uint32_t, 3>> renamed;

@@ -30,6 +30,7 @@ struct CanonicalMesh {
 };
 
 /// Removes triangles without area and those that occur twice. O(n log n).
+/// @pre is_whole(mesh), all vertices finite
 [[nodiscard]] CanonicalMesh canonical(const TriangleMesh& mesh);
 
 }  // namespace verisim::recover

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/recover/surface_fit.hpp"
 
@@ -12,9 +14,7 @@ namespace verisim::recover {
 namespace {
 
 using pinned::kFullTurn;
-constexpr double kParallel = 1 - 1e-8;       // cosine
-constexpr std::size_t kCirclePointsMin = 4;  // any three points lie on a circle
-constexpr double kSlack = 3;                 // tolerances: the intersection of two surfaces is off where both are
+constexpr std::size_t kCirclePointsMin = 4;  // no heuristic: any three points lie on a circle
 
 /// A circle or ellipse, p(t) = center + semi_x cos t x_axis + semi_y sin t (normal x x_axis). A circle if both
 /// semi-axes are equal [m].
@@ -54,14 +54,15 @@ std::optional<Conic> circle_about_axis(const SurfaceValue& round, const std::vec
   return Conic{round.point + height * round.axis, round.axis, round.axis.unitOrthogonal(), rho, rho};
 }
 
-bool are_coaxial(const SurfaceValue& a, const SurfaceValue& b, double tolerance) {
-  if (std::abs(a.axis.dot(b.axis)) < kParallel) return false;
-  return b.kind == Kind::plane || profile_of(b.point, a.point, a.axis).rho <= kSlack * tolerance;
+bool are_coaxial(const SurfaceValue& a, const SurfaceValue& b, double tolerance, const RecoverThresholds& thresholds) {
+  if (std::abs(a.axis.dot(b.axis)) < 1 - thresholds.not_parallel) return false;
+  return b.kind == Kind::plane || profile_of(b.point, a.point, a.axis).rho <= thresholds.curve_slack * tolerance;
 }
 
-std::optional<Conic> plane_cylinder_section(const SurfaceValue& plane, const SurfaceValue& cylinder) {
+std::optional<Conic> plane_cylinder_section(const SurfaceValue& plane, const SurfaceValue& cylinder,
+                                            double cosine_min) {
   const double cosine = plane.axis.dot(cylinder.axis);
-  if (std::abs(cosine) < 1e-3) return std::nullopt;
+  if (std::abs(cosine) < cosine_min) return std::nullopt;
   const double along = (plane.point - cylinder.point).dot(plane.axis) / cosine;
   const Vector3d slope = cylinder.axis - cosine * plane.axis;
   if (!(slope.norm() > 0)) return std::nullopt;
@@ -70,7 +71,7 @@ std::optional<Conic> plane_cylinder_section(const SurfaceValue& plane, const Sur
 }
 
 std::optional<Conic> expected_conic(std::vector<SurfaceValue> beside, const std::vector<Vector3d>& points,
-                                    double tolerance) {
+                                    double tolerance, const RecoverThresholds& thresholds) {
   if (beside.size() != 2) return std::nullopt;
   if (beside[0].kind == Kind::plane) std::swap(beside[0], beside[1]);
   const SurfaceValue &round = beside[0], &other = beside[1];
@@ -80,8 +81,10 @@ std::optional<Conic> expected_conic(std::vector<SurfaceValue> beside, const std:
     turned.axis = other.axis;
     return circle_about_axis(turned, points);
   }
-  if (round.kind != Kind::sphere && are_coaxial(round, other, tolerance)) return circle_about_axis(round, points);
-  if (round.kind == Kind::cylinder && other.kind == Kind::plane) return plane_cylinder_section(other, round);
+  if (round.kind != Kind::sphere && are_coaxial(round, other, tolerance, thresholds))
+    return circle_about_axis(round, points);
+  if (round.kind == Kind::cylinder && other.kind == Kind::plane)
+    return plane_cylinder_section(other, round, thresholds.section_cosine_min);
   return std::nullopt;
 }
 
@@ -147,14 +150,18 @@ void set_conic(Edge& edge, Conic conic) {
 
 }  // namespace
 
-void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tolerance) {
+void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tolerance,
+               const RecoverThresholds& thresholds) {
   const std::vector<Vector3d>& points = edge.polyline;
+  VERISIM_ASSERT(points.size() >= 2);
+  VERISIM_ASSERT(is_positive(tolerance));
   std::vector<SurfaceValue> values;
   for (const Surface* surface : beside) {
+    VERISIM_ASSERT(surface != nullptr);
     if (const auto value = SurfaceValue::of(*surface)) values.push_back(*value);
   }
-  const std::optional<Conic> conic = expected_conic(values, points, tolerance);
-  if (conic && passes_through(*conic, points, kSlack * tolerance)) return set_conic(edge, *conic);
+  const std::optional<Conic> conic = expected_conic(values, points, tolerance, thresholds);
+  if (conic && passes_through(*conic, points, thresholds.curve_slack * tolerance)) return set_conic(edge, *conic);
   if (is_straight(points, tolerance)) {
     const Vector3d way = points.back() - points.front();
     edge.curve = Line{points.front(), way.normalized()};
@@ -164,7 +171,7 @@ void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tol
   }
   if (points.size() >= kCirclePointsMin) {
     const std::optional<Conic> circle = circle_through_points(points);
-    if (circle && passes_through(*circle, points, kSlack * tolerance)) return set_conic(edge, *circle);
+    if (circle && passes_through(*circle, points, thresholds.curve_slack * tolerance)) return set_conic(edge, *circle);
   }
   edge.curve = OtherCurve{};
   edge.length = length_of(points);

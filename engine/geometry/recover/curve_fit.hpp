@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/geometry/entity.hpp"
+#include "engine/geometry/recover.hpp"
 
 namespace verisim::recover {
 
@@ -12,6 +13,8 @@ namespace verisim::recover {
 /// curve. Two or three points are an arc only if the surfaces say so.
 /// @param beside     the surfaces on both sides, or one
 /// @param tolerance  m, of points from the curve
-void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tolerance);
+/// @pre the polyline has two points or more; no surface is null; the tolerance is finite and above 0
+void set_curve(Edge& edge, const std::vector<const Surface*>& beside, double tolerance,
+               const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

@@ -70,10 +70,10 @@ std::vector<FacetSide> sides_of(const std::vector<BorderSegment>& segments, cons
 
 }  // namespace
 
-Facets facets_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth) {
+Facets facets_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth, const RecoverThresholds& thresholds) {
   Facets facets;
   facets.of_triangle.assign(mesh.triangles.size(), kNone);
-  for (std::vector<std::uint32_t>& triangles : flat_regions(mesh, tolerance)) {
+  for (std::vector<std::uint32_t>& triangles : flat_regions(mesh, tolerance, thresholds)) {
     const auto number = static_cast<std::uint32_t>(facets.all.size());
     std::ranges::sort(triangles);
     for (const std::uint32_t t : triangles) facets.of_triangle[t] = number;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
 
 namespace verisim::recover {
@@ -31,6 +32,7 @@ struct Facets {
 
 /// @param tolerance   m, of vertices from their facet's plane
 /// @param cos_smooth  cosine of the largest angle between normals at which a side is smooth
-[[nodiscard]] Facets facets_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth);
+[[nodiscard]] Facets facets_of(const CanonicalMesh& mesh, double tolerance, double cos_smooth,
+                               const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

@@ -1,9 +1,10 @@
 #include "engine/geometry/recover/fit_ambiguity.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/geometry/recover/surface_fit.hpp"
 
@@ -11,10 +12,6 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr std::size_t kPlacesMin = 5;
-/// By kind. Through fewer points a surface passes by chance: kinds have 3, 5, 6, 4 and 7 parameters, and a whole mesh
-/// of points to choose from.
-constexpr std::array<std::size_t, 5> kPointsMin = {3, 8, 8, 9, 14};
 using pinned::kFullTurn;
 
 /// Angles on a circle that are at least `apart` from each other [rad], ascending, the widest gap before the first.
@@ -40,30 +37,28 @@ std::vector<double> distinct_angles(std::vector<double> angles, double apart) {
   return different;
 }
 
-/// True for five different places around a circle, or four at equal steps.
-bool determine_circle(const std::vector<double>& angles, double apart, double equal_step) {
+/// True for five different places around a circle, or four at equal steps (places_min says how many).
+bool determine_circle(const std::vector<double>& angles, double apart, const RecoverThresholds& thresholds) {
   const std::vector<double> at = distinct_angles(angles, apart);
-  if (at.size() >= kPlacesMin) return true;
-  if (at.size() + 1 < kPlacesMin) return false;
+  if (at.size() >= thresholds.places_min) return true;
+  if (at.size() + 1 < thresholds.places_min) return false;
   const double mean = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
   for (std::size_t i = 1; i < at.size(); ++i) {
-    if (std::abs(at[i] - at[i - 1] - mean) > equal_step * mean) return false;
+    if (std::abs(at[i] - at[i - 1] - mean) > thresholds.equal_step * mean) return false;
   }
   return true;
 }
 
 }  // namespace
 
-std::size_t points_min(Kind kind) {
-  return kPointsMin[static_cast<std::size_t>(kind)];
-}
-
 bool is_unambiguous(const SurfaceValue& s, std::span<const Vector3d> points, double tolerance,
                     const RecoverThresholds& thresholds) {
+  VERISIM_ASSERT(is_positive(tolerance));
+  const double noise = thresholds.noise * tolerance;
   const double sagitta_min = thresholds.sagitta_min * tolerance;
   if (s.kind == Kind::plane) return true;
   if (s.kind == Kind::torus && std::abs(s.a) < sagitta_min) return false;  // a sphere, about any axis
-  if (points.size() < points_min(s.kind)) return false;
+  if (points.size() < thresholds.points_min[static_cast<std::size_t>(s.kind)]) return false;
   const SurfaceValue flat = plane_through(points);
   const bool is_curved =
       std::ranges::any_of(points, [&](const Vector3d& p) { return std::abs(flat.distance(p)) > sagitta_min; });
@@ -76,13 +71,13 @@ bool is_unambiguous(const SurfaceValue& s, std::span<const Vector3d> points, dou
     largest = std::max(largest, f.rho);
     if (s.kind == Kind::torus) along.push_back(pinned::atan2(f.height, f.rho - s.a));
     if (s.kind == Kind::sphere) along.push_back(pinned::atan2(f.height, f.rho));
-    if (f.rho > 4 * tolerance) around.push_back(pinned::atan2(f.outward.dot(y), f.outward.dot(x)));
+    if (f.rho > noise) around.push_back(pinned::atan2(f.outward.dot(y), f.outward.dot(x)));
   }
   const double across_radius = s.kind == Kind::torus ? s.b : s.a;
-  const auto apart = [&](double radius) { return 4 * tolerance / std::max(radius, tolerance); };
-  if (!determine_circle(around, apart(largest), thresholds.equal_step)) return false;
+  const auto apart = [&](double radius) { return noise / std::max(radius, tolerance); };
+  if (!determine_circle(around, apart(largest), thresholds)) return false;
   if (s.kind == Kind::cylinder || s.kind == Kind::cone) return true;
-  return determine_circle(along, apart(across_radius), thresholds.equal_step);
+  return determine_circle(along, apart(across_radius), thresholds);
 }
 
 }  // namespace verisim::recover

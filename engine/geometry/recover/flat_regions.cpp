@@ -28,14 +28,18 @@ class Beside {
 /// CGAL's region type: the plane by least squares through the corners of the region so far.
 class InPlane {
  public:
-  InPlane(const CanonicalMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {}
+  InPlane(const CanonicalMesh& mesh, double tolerance, const RecoverThresholds& thresholds)
+      : mesh_(mesh),
+        tolerance_(tolerance),
+        sliver_(thresholds.sliver * tolerance),
+        same_normal_(thresholds.same_normal) {}
 
   bool is_part_of_region(std::size_t /*from*/, std::size_t triangle, const std::vector<std::size_t>& /*region*/) const {
     const auto t = static_cast<std::uint32_t>(triangle);
     for (std::size_t i = 0; i < 3; ++i) {
       if (std::abs((mesh_.corner(t, i) - point_).dot(normal_)) > tolerance_) return false;
     }
-    return mesh_.heights[t] <= kSliver * tolerance_ || mesh_.normals[t].dot(normal_) >= kSameNormal;
+    return mesh_.heights[t] <= sliver_ || mesh_.normals[t].dot(normal_) >= same_normal_;
   }
 
   static bool is_valid_region(const std::vector<std::size_t>& /*region*/) { return true; }
@@ -61,12 +65,13 @@ class InPlane {
     const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(squares_ / n - sum_ * sum_.transpose() / (n * n));
     const Vector3d fitted = axes.eigenvectors().col(0);
     const double side = fitted.dot(seed_normal_);
-    normal_ = std::abs(side) < kSameNormal ? seed_normal_ : Vector3d(side < 0 ? -fitted : fitted);
+    normal_ = std::abs(side) < same_normal_ ? seed_normal_ : Vector3d(side < 0 ? -fitted : fitted);
   }
 
  private:
   const CanonicalMesh& mesh_;
-  double tolerance_;
+  double tolerance_, sliver_;  // m
+  double same_normal_;         // cosine
   Vector3d origin_, seed_normal_, point_, normal_, sum_;
   Matrix3d squares_;
   std::size_t counted_ = 0;
@@ -84,14 +89,15 @@ struct Seeds {
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> flat_regions(const CanonicalMesh& mesh, double tolerance) {
+std::vector<std::vector<std::uint32_t>> flat_regions(const CanonicalMesh& mesh, double tolerance,
+                                                     const RecoverThresholds& thresholds) {
   std::vector<std::size_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return mesh.areas[a] > mesh.areas[b]; });
   std::vector<std::vector<std::uint32_t>> facets;
   if (order.empty()) return facets;
   Beside beside(mesh);
-  InPlane in_plane(mesh, tolerance);
+  InPlane in_plane(mesh, tolerance, thresholds);
   CGAL::Shape_detection::Region_growing<std::vector<std::size_t>, Beside, InPlane, Seeds> growing(
       order, beside, in_plane, Seeds{&order});
   std::vector<std::vector<std::size_t>> regions;

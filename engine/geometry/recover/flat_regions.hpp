@@ -3,17 +3,15 @@
 
 #include <vector>
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/canonical_mesh.hpp"
 
 namespace verisim::recover {
 
-/// Cosine of 1 degree: normals of one facet differ by no more. Slivers are excepted.
-inline constexpr double kSameNormal = 0.9998476951563913;
-/// Tolerances. A triangle of less height is a sliver: its normal is unreliable.
-inline constexpr double kSliver = 20;
-
 /// Facets in the order of their largest triangles, the largest first. Every triangle is in one.
+/// Normals of a facet are the same to thresholds.same_normal, those of slivers excepted.
 /// @param tolerance  m, of vertices from the facet's plane
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> flat_regions(const CanonicalMesh& mesh, double tolerance);
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> flat_regions(const CanonicalMesh& mesh, double tolerance,
+                                                                   const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

@@ -4,16 +4,8 @@
 #include <cmath>
 
 #include "engine/base/pinned_math.hpp"
-#include "engine/geometry/recover/flat_regions.hpp"
 
 namespace verisim::recover {
-
-namespace {
-
-constexpr double kFilletSpan = -0.2;  // cosine of 102 degrees: a fan spans at most a quarter of a tube, a fillet
-constexpr double kNoise = 4;          // tolerances: nearer to an axis, or lower, is noise
-
-}  // namespace
 
 /// The corners in the surface's own parameters.
 struct InlierTest::Corners {
@@ -21,7 +13,8 @@ struct InlierTest::Corners {
   std::array<Eigen::Vector2d, 3> tube;  ///< unit, in the corner's meridian half plane: from the tube's centre
   std::array<double, 3> rho, height;
 
-  Corners(const CanonicalMesh& mesh, std::uint32_t t, const SurfaceValue& s, double tolerance) {
+  /// @param noise  m: nearer to the axis, a direction from it means nothing
+  Corners(const CanonicalMesh& mesh, std::uint32_t t, const SurfaceValue& s, double noise) {
     std::array<bool, 3> on_axis{};
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d& p = mesh.corner(t, i);
@@ -31,7 +24,7 @@ struct InlierTest::Corners {
       rho[i] = f.rho;
       height[i] = f.height;
       tube[i] = Eigen::Vector2d(f.rho - s.a, f.height).normalized();
-      on_axis[i] = f.rho <= kNoise * tolerance;
+      on_axis[i] = f.rho <= noise;
     }
     for (std::size_t i = 0; i < 3; ++i) {  // on the axis every direction is outward: take that of the others
       if (!on_axis[i]) continue;
@@ -70,7 +63,7 @@ InlierTest::ParameterImage InlierTest::parameter_image(const Corners& c) const {
 
 bool InlierTest::is_inlier(std::uint32_t t) const {
   if (!is_on_surface(t)) return false;
-  const Corners c(mesh_, t, surface_, limits_.tolerance);
+  const Corners c(mesh_, t, surface_, limits_.thresholds.noise * limits_.tolerance);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
     if (c.gradient[i].dot(c.gradient[k]) < limits_.cos_step) return false;
@@ -79,7 +72,7 @@ bool InlierTest::is_inlier(std::uint32_t t) const {
       return false;
     if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < limits_.cos_step) return false;
   }
-  if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
+  if (mesh_.heights[t] <= limits_.thresholds.sliver * limits_.tolerance) return true;
   const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
   if ((limits_.is_hole ? -along : along) <= limits_.thresholds.nearly_tangent) return false;
   return surface_.kind == Kind::sphere ||
@@ -88,21 +81,21 @@ bool InlierTest::is_inlier(std::uint32_t t) const {
 
 bool InlierTest::is_loose_inlier(std::uint32_t t) const {
   if (!is_on_surface(t)) return false;
-  const Corners c(mesh_, t, surface_, limits_.tolerance);
+  const Corners c(mesh_, t, surface_, limits_.thresholds.noise * limits_.tolerance);
   const bool is_sphere = surface_.kind == Kind::sphere;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = (i + 1) % 3;
     if ((is_sphere ? c.gradient : c.outward)[i].dot((is_sphere ? c.gradient : c.outward)[k]) < limits_.cos_step)
       return false;
-    if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < kFilletSpan) return false;
+    if (surface_.kind == Kind::torus && c.tube[i].dot(c.tube[k]) < limits_.thresholds.fillet_span) return false;
   }
-  if (mesh_.heights[t] <= kSliver * limits_.tolerance) return true;
+  if (mesh_.heights[t] <= limits_.thresholds.sliver * limits_.tolerance) return true;
   if (is_sphere) {
     const double along = (c.gradient[0] + c.gradient[1] + c.gradient[2]).normalized().dot(mesh_.normals[t]);
     return (limits_.is_hole ? -along : along) > limits_.thresholds.parameter_area_min;
   }
   const ParameterImage image = parameter_image(c);
-  return image.area > kNoise * limits_.tolerance * image.length;
+  return image.area > limits_.thresholds.noise * limits_.tolerance * image.length;
 }
 
 }  // namespace verisim::recover

@@ -1,17 +1,8 @@
 #include "engine/geometry/recover/neighborhoods.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace verisim::recover {
-
-namespace {
-
-constexpr std::array<std::size_t, 4> kRingSizes = {2, 3, 6, 12};  // k
-constexpr int kStripSteps = 4;                                    // facets of a strip to each side
-constexpr double kSideParallel = 0.7;                             // cosine
-
-}  // namespace
 
 std::vector<std::uint32_t> Neighborhoods::k_ring(std::uint32_t facet, std::size_t k) {
   std::vector<std::uint32_t> found = {facet};
@@ -34,7 +25,7 @@ std::vector<std::uint32_t> Neighborhoods::k_ring(std::uint32_t facet, std::size_
 
 /// Extends a strip of facets: each facet is left through the side opposite to the one through which it was entered.
 void Neighborhoods::extend_strip(std::uint32_t facet, const FacetSide* through, Strip& strip) const {
-  for (int step = 0; step < kStripSteps && through != nullptr; ++step) {
+  for (std::size_t step = 0; step < regions_.thresholds.strip_steps && through != nullptr; ++step) {
     const std::uint32_t next = through->facet;
     if (!through->smooth || !regions_.is_free_facet(next) || std::ranges::find(strip, next) != strip.end()) return;
     strip.push_back(next);
@@ -66,7 +57,7 @@ std::vector<Neighborhoods::Strip> Neighborhoods::strips(std::uint32_t facet) con
   for (const bool across : {false, true}) {
     Strip strip = {facet};
     for (const FacetSide& side : sides) {
-      const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > kSideParallel;
+      const bool is_parallel = std::abs(side.direction.dot(longest->direction)) > regions_.thresholds.side_parallel;
       if (side.smooth && is_parallel != across) extend_strip(facet, &side, strip);
     }
     std::ranges::sort(strip);
@@ -86,7 +77,7 @@ std::vector<std::vector<std::uint32_t>> Neighborhoods::fit_samples(std::uint32_t
     std::ranges::set_union(result[0], result[1], std::back_inserter(cross));
     add(std::move(cross));
   }
-  for (const std::size_t steps : kRingSizes) add(k_ring(facet, steps));
+  for (const std::size_t steps : regions_.thresholds.ring_sizes) add(k_ring(facet, steps));
   return result;
 }
 

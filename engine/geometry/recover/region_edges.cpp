@@ -87,7 +87,8 @@ class BoundaryChains {
 
 }  // namespace
 
-std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Region>& regions, double tolerance) {
+std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Region>& regions, double tolerance,
+                                const RecoverThresholds& thresholds) {
   const std::vector<BoundarySegment> segments = boundary_of(mesh, regions);
   std::vector<Edge> edges;
   BoundaryChains(segments).for_each(
@@ -100,7 +101,7 @@ std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Reg
           edge.faces.push_back(r);
           beside.push_back(&regions[r].surface);
         }
-        set_curve(edge, beside, tolerance);
+        set_curve(edge, beside, tolerance, thresholds);
         edges.push_back(std::move(edge));
       });
   return edges;

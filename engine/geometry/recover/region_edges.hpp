@@ -12,6 +12,6 @@ namespace verisim::recover {
 /// Edges in the order of their first vertices. Edge::faces holds the numbers of the regions; one where the mesh is
 /// open. A chain ends where more than two regions meet. @param tolerance  m, of vertices from their curve
 [[nodiscard]] std::vector<Edge> edges_between(const CanonicalMesh& mesh, const std::vector<Region>& regions,
-                                              double tolerance);
+                                              double tolerance, const RecoverThresholds& thresholds);
 
 }  // namespace verisim::recover

@@ -10,7 +10,7 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr int kPassesMax = 8;
+constexpr int kPassesMax = 8;  // a bound of the work: growing ends when a pass adds nothing, usually the third
 
 bool passes_through(const SurfaceValue& s, std::span<const Vector3d> points, double within) {
   return std::ranges::all_of(points, [&](const Vector3d& p) { return std::abs(s.distance(p)) <= within; });
@@ -49,18 +49,20 @@ std::optional<Candidate> RegionGrowing::grow_from(const std::vector<std::uint32_
   sample.points = regions_.points_of(vertices, false);
   if (inner_only) {
     std::vector<Vector3d> inner = regions_.points_of(std::move(vertices), true);
-    if (inner.size() < points_min(kind) || inner.size() == sample.points.size()) return std::nullopt;
+    if (inner.size() < regions_.thresholds.points_min[static_cast<std::size_t>(kind)] ||
+        inner.size() == sample.points.size())
+      return std::nullopt;
     sample.points = std::move(inner);
   }
   const double tolerance = regions_.tolerance;
-  std::optional<SurfaceValue> surface = fit(kind, sample, tolerance);
+  std::optional<SurfaceValue> surface = fit(kind, sample, tolerance, regions_.thresholds);
   if (!surface || !passes_through(*surface, sample.points, tolerance)) return std::nullopt;
   Candidate best;
   for (int i = 0; i < kPassesMax; ++i) {
     std::vector<std::uint32_t> triangles = grow({*surface, inner_only}, seed);
     if (triangles.size() <= best.triangles.size()) break;
     best = {{*surface, inner_only}, std::move(triangles)};
-    surface = refit(*surface, regions_.points_of_triangles(best.triangles, inner_only), tolerance);
+    surface = refit(*surface, regions_.points_of_triangles(best.triangles, inner_only), tolerance, regions_.thresholds);
     if (!surface) break;
   }
   if (best.triangles.empty()) return std::nullopt;

@@ -8,10 +8,6 @@ namespace verisim::recover {
 
 namespace {
 
-constexpr std::size_t kPatchTrianglesMax = 200;  // a larger region is a surface
-constexpr std::size_t kClusterMin = 12;          // patches of a cluster
-constexpr std::size_t kTrianglesEachMax = 30;    // mean triangles of its patches
-
 class RegionMerger {
  public:
   explicit RegionMerger(Regions& regions) : regions_(regions), last_tested_by_(regions.all.size(), kNone) {
@@ -62,7 +58,8 @@ class FreeformPatches {
  public:
   explicit FreeformPatches(Regions& regions) : regions_(regions) {
     for (const FoundRegion& region : regions.all)
-      is_patch_.push_back(region.fit && !region.triangles.empty() && region.triangles.size() <= kPatchTrianglesMax);
+      is_patch_.push_back(region.fit && !region.triangles.empty() &&
+                          region.triangles.size() <= regions.thresholds.patch_triangles_max);
   }
 
   void run() {
@@ -105,7 +102,9 @@ class FreeformPatches {
         is_patch_[joined.back()] = false;
       });
     }
-    if (joined.size() < kClusterMin || triangles >= kTrianglesEachMax * joined.size()) return;
+    if (joined.size() < regions_.thresholds.cluster_min ||
+        triangles >= regions_.thresholds.triangles_each_max * joined.size())
+      return;
     for (const std::uint32_t r : joined) regions_.release(r);
   }
 

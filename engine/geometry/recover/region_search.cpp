@@ -13,9 +13,6 @@ namespace verisim::recover {
 namespace {
 
 constexpr Kind kCurvedKinds[] = {Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
-constexpr std::size_t kRetrySteps = 3;   // smooth sides from a new region: facets within are tried again
-constexpr std::size_t kFailedSteps = 2;  // smooth sides from a seed without a fit: facets within are not tried
-constexpr std::size_t kFewFacets = 4;
 
 class Search {
  public:
@@ -70,7 +67,8 @@ class Search {
     } else if (!regions_.is_small(facet) && has_plane_borders(facet)) {
       regions_.add_plane(facet);
     } else {
-      for (const std::uint32_t near : neighborhoods_.k_ring(facet, kFailedSteps)) untried_[near] = false;
+      for (const std::uint32_t near : neighborhoods_.k_ring(facet, regions_.thresholds.failed_steps))
+        untried_[near] = false;
       return false;
     }
     retry_beside(regions_.all.back().triangles);
@@ -120,7 +118,7 @@ class Search {
   /// True if facets that meet smoothly are planes: they are few, and none borders smoothly on a region. Pieces of a
   /// curved or free surface are many, or border on one.
   [[nodiscard]] bool are_planes(const std::vector<std::uint32_t>& joined) const {
-    return joined.size() <= kFewFacets && std::ranges::all_of(joined, [&](std::uint32_t facet) {
+    return joined.size() <= regions_.thresholds.few_facets && std::ranges::all_of(joined, [&](std::uint32_t facet) {
              return std::ranges::all_of(facets_[facet].sides, [&](const FacetSide& side) {
                return !side.smooth || regions_.is_free_facet(side.facet);
              });
@@ -140,7 +138,8 @@ class Search {
     std::ranges::sort(beside);
     beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
     for (const std::uint32_t facet : beside) {
-      for (const std::uint32_t near : neighborhoods_.k_ring(facet, kRetrySteps)) untried_[near] = true;
+      for (const std::uint32_t near : neighborhoods_.k_ring(facet, regions_.thresholds.retry_steps))
+        untried_[near] = true;
     }
   }
 

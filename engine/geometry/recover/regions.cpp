@@ -5,7 +5,6 @@
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
-#include "engine/geometry/recover/flat_regions.hpp"
 #include "engine/geometry/recover/surface_fit.hpp"
 
 namespace verisim::recover {
@@ -16,7 +15,7 @@ Regions::Regions(const CanonicalMesh& given, double tolerance_m, double round_st
       thresholds(wanted),
       cos_smooth(pinned::cos(round_step)),
       cos_step(pinned::cos(thresholds.longer_step * round_step)),
-      facets(facets_of(mesh, tolerance, cos_smooth)),
+      facets(facets_of(mesh, tolerance, cos_smooth, thresholds)),
       on_sharp_edge_(mesh.vertices.size(), false),
       of_triangle_(mesh.triangles.size(), kNone),
       assigned_in_facet_(facets.all.size(), 0) {
@@ -32,7 +31,7 @@ Regions::Regions(const CanonicalMesh& given, double tolerance_m, double round_st
 }
 
 bool Regions::is_smooth(std::uint32_t t, std::uint32_t beside) const {
-  const bool is_sliver = std::min(mesh.heights[t], mesh.heights[beside]) <= kSliver * tolerance;
+  const bool is_sliver = std::min(mesh.heights[t], mesh.heights[beside]) <= thresholds.sliver * tolerance;
   return is_sliver || mesh.normals[t].dot(mesh.normals[beside]) > cos_smooth;
 }
 
@@ -68,6 +67,7 @@ std::vector<Vector3d> Regions::points_of(std::vector<std::uint32_t> vertices, bo
 
 void Regions::add_region(FoundRegion region) {
   for (const std::uint32_t t : region.triangles) {
+    VERISIM_ASSERT(is_free(t));
     of_triangle_[t] = static_cast<std::uint32_t>(all.size());
     ++assigned_in_facet_[facets.of_triangle[t]];
   }
@@ -75,6 +75,7 @@ void Regions::add_region(FoundRegion region) {
 }
 
 void Regions::add_curved(const CurvedFit& fit, std::vector<std::uint32_t> triangles) {
+  VERISIM_ASSERT(!triangles.empty());
   const std::uint32_t first = triangles.front();
   const bool hole = fit.surface.gradient(mesh.centers[first]).dot(mesh.normals[first]) < 0;
   Surface surface = fit.surface.surface();
@@ -98,12 +99,15 @@ void Regions::add_freeform(std::vector<std::uint32_t> triangles) {
 }
 
 void Regions::assign(std::uint32_t region, std::uint32_t triangle) {
+  VERISIM_ASSERT(region < all.size());
+  VERISIM_ASSERT(is_free(triangle));
   of_triangle_[triangle] = region;
   ++assigned_in_facet_[facets.of_triangle[triangle]];
   all[region].triangles.push_back(triangle);
 }
 
 void Regions::merge(std::uint32_t region, std::uint32_t into) {
+  VERISIM_ASSERT(region != into);
   std::vector<std::uint32_t>& triangles = all[region].triangles;
   for (const std::uint32_t t : triangles) of_triangle_[t] = into;
   all[into].triangles.insert(all[into].triangles.end(), triangles.begin(), triangles.end());

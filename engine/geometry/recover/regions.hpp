@@ -32,7 +32,7 @@ class Regions {
   [[nodiscard]] bool is_free(std::uint32_t triangle) const { return of_triangle_[triangle] == kNone; }
   /// All its triangles are free.
   [[nodiscard]] bool is_free_facet(std::uint32_t facet) const { return assigned_in_facet_[facet] == 0; }
-  /// At most two triangles: they may be coplanar by chance.
+  /// At most two triangles, as many as a quad has: they may be coplanar by chance.
   [[nodiscard]] bool is_small(std::uint32_t facet) const { return facets.all[facet].triangles.size() <= 2; }
   /// True if two neighbouring triangles can be pieces of one smooth surface, by the angle between their normals.
   [[nodiscard]] bool is_smooth(std::uint32_t triangle, std::uint32_t beside) const;
@@ -47,12 +47,13 @@ class Regions {
                                                           bool inner_only) const;
   [[nodiscard]] std::vector<Vector3d> points_of(std::vector<std::uint32_t> vertices, bool inner_only) const;
 
+  // @pre of what adds and assigns: the triangles are free, and of a curved surface there is one at least.
   void add_curved(const CurvedFit& fit, std::vector<std::uint32_t> triangles);
   void add_plane(std::uint32_t facet);
   void add_freeform(std::vector<std::uint32_t> triangles);
   /// Adds one free triangle to a region.
   void assign(std::uint32_t region, std::uint32_t triangle);
-  /// Moves all triangles of a region into another. The region stays in `all`, empty.
+  /// Moves all triangles of a region into another. The region stays in `all`, empty. @pre they are two
   void merge(std::uint32_t region, std::uint32_t into);
   /// Frees all triangles of a region. The region stays in `all`, empty.
   void release(std::uint32_t region);

@@ -5,23 +5,21 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
+
 namespace verisim::recover {
 
 namespace {
 
 using Row = SurfaceValue::Row;
 
+// Bounds of the work and of rounding, no heuristics: those are in RecoverThresholds.
 constexpr int kIterations = 40;
-constexpr double kMostDamping = 1e6;
+constexpr int kFirst = 2;                   // iterations before a fit is asked to be near, or to get there fast
+constexpr double kMostDamping = 1e6;        // no step is shorter than a millionth of the gradient's
 constexpr double kSmallestDamping = 1e-13;  // holds the directions in which a kind does not change
-constexpr std::size_t kPointsOfAFit = 64;
-constexpr int kFirst = 2;
-constexpr double kFast = 0.5;               // after the first iterations: what fits is near, or gets there fast
-constexpr double kSettled = 0.99;           // a step that lowers the cost by less is the last
-constexpr double kNear = 30, kFine = 1e-3;  // tolerances, root of the mean square
-constexpr double kSingular = 1e-12, kNearlySingular = 1e-9;
-constexpr double kNarrowestCone = 0.005, kWidestCone = 200;  // tangents of half angles
-constexpr double kLargestRadius = 1000;                      // sizes of the sample: beyond it is flat
+constexpr double kSingular = 1e-12, kNearlySingular = 1e-9;  // reciprocal condition, of points and of squared normals
 
 // --- least squares --------------------------------------------------------------------------------------------------
 
@@ -34,7 +32,9 @@ double cost_of(const SurfaceValue& s, std::span<const Vector3d> points) {
   return cost;
 }
 
-SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points, double tolerance) {
+SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points, double tolerance,
+                     const RecoverThresholds& thresholds) {
+  const double near = thresholds.near_fit, fine = thresholds.fine_fit;
   const double wanted = tolerance * tolerance * static_cast<double>(points.size());
   double cost = cost_of(s, points), damping = 1e-4;
   for (int i = 0; i < kIterations && cost > 0; ++i) {
@@ -61,8 +61,9 @@ SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points, double to
       }
       damping *= 10;
     }
-    const bool is_slow_at_most = i < kFirst || cost < kNear * kNear * wanted;
-    if (cost < kFine * kFine * wanted || !(cost < (is_slow_at_most ? kSettled : kFast) * cost_before)) break;
+    const bool is_slow_at_most = i < kFirst || cost < near * near * wanted;
+    if (cost < fine * fine * wanted || !(cost < (is_slow_at_most ? thresholds.settled : thresholds.fast) * cost_before))
+      break;
   }
   return s;
 }
@@ -170,11 +171,12 @@ std::optional<SurfaceValue> guess(Kind kind, const Sample& sample) {
 
 // --- scaling --------------------------------------------------------------------------------------------------------
 
-struct Frame {
+/// Coordinates about the middle of the points, in units of their size: what is fitted has numbers near 1.
+struct Scaling {
   Vector3d center = Vector3d::Zero();
   double size = 0;
 
-  explicit Frame(std::span<const Vector3d> points) {
+  explicit Scaling(std::span<const Vector3d> points) {
     for (const Vector3d& p : points) center += p / static_cast<double>(points.size());
     for (const Vector3d& p : points) size = std::max(size, (p - center).norm());
   }
@@ -208,25 +210,26 @@ void settle(SurfaceValue& s) {
   if (s.kind == Kind::cone) s.a -= along * s.b;
 }
 
-bool is_sound(const SurfaceValue& s) {
+bool is_sound(const SurfaceValue& s, const RecoverThresholds& thresholds) {
+  const double largest = thresholds.largest_radius;
   if (!s.point.allFinite() || !s.axis.allFinite() || !std::isfinite(s.a + s.b)) return false;
   if (s.kind == Kind::plane) return true;
-  if (s.kind == Kind::cone) return std::abs(s.b) > kNarrowestCone && std::abs(s.b) < kWidestCone;
-  if (s.kind == Kind::torus) return std::abs(s.a) < kLargestRadius && s.b > std::max(-s.a, 0.0) && s.b < kLargestRadius;
-  return s.a > 0 && s.a < kLargestRadius;
+  if (s.kind == Kind::cone) return std::abs(s.b) > thresholds.narrowest_cone && std::abs(s.b) < thresholds.widest_cone;
+  if (s.kind == Kind::torus) return std::abs(s.a) < largest && s.b > std::max(-s.a, 0.0) && s.b < largest;
+  return s.a > 0 && s.a < largest;
 }
 
-std::optional<SurfaceValue> result_of(SurfaceValue s, std::span<const Vector3d> points, const Frame& frame,
-                                      double tolerance) {
-  s = refined(s, points, tolerance / frame.size);
+std::optional<SurfaceValue> result_of(SurfaceValue s, std::span<const Vector3d> points, const Scaling& scaling,
+                                      double tolerance, const RecoverThresholds& thresholds) {
+  s = refined(s, points, tolerance / scaling.size, thresholds);
   settle(s);
-  if (!is_sound(s)) return std::nullopt;
-  return frame.out(s);
+  if (!is_sound(s, thresholds)) return std::nullopt;
+  return scaling.out(s);
 }
 
 /// Enough of many points.
-std::vector<Vector3d> thinned(std::span<const Vector3d> points) {
-  const std::size_t step = points.size() / kPointsOfAFit + 1;
+std::vector<Vector3d> thinned(std::span<const Vector3d> points, std::size_t enough) {
+  const std::size_t step = points.size() / enough + 1;
   std::vector<Vector3d> some;
   for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
   return some;
@@ -251,27 +254,34 @@ std::optional<Vector3d> circle_through(std::span<const Eigen::Vector2d> points) 
 }
 
 SurfaceValue plane_through(std::span<const Vector3d> points) {
-  const Frame frame(points);
+  VERISIM_ASSERT(!points.empty());
+  const Scaling scaling(points);
   Matrix3d m = Matrix3d::Zero();
-  for (const Vector3d& p : points) m += (p - frame.center) * (p - frame.center).transpose();
-  return SurfaceValue{Kind::plane, frame.center, smallest_axis(m)};
+  for (const Vector3d& p : points) m += (p - scaling.center) * (p - scaling.center).transpose();
+  return SurfaceValue{Kind::plane, scaling.center, smallest_axis(m)};
 }
 
-std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance) {
-  const Frame frame(sample.points);
-  if (!(frame.size > 0)) return std::nullopt;
-  const Sample scaled{frame.into(thinned(sample.points)), frame.into(sample.centers), sample.normals};
+std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance,
+                                const RecoverThresholds& thresholds) {
+  VERISIM_ASSERT(sample.centers.size() == sample.normals.size());
+  VERISIM_ASSERT(is_positive(tolerance));
+  const Scaling scaling(sample.points);
+  if (!(scaling.size > 0)) return std::nullopt;
+  const Sample scaled{scaling.into(thinned(sample.points, thresholds.points_of_a_fit)), scaling.into(sample.centers),
+                      sample.normals};
   const std::optional<SurfaceValue> start = guess(kind, scaled);
   if (!start) return std::nullopt;
-  return result_of(*start, scaled.points, frame, tolerance);
+  return result_of(*start, scaled.points, scaling, tolerance, thresholds);
 }
 
-std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points, double tolerance) {
-  const Frame frame(points);
-  if (!(frame.size > 0)) return std::nullopt;
-  SurfaceValue start = frame.into(guess);
+std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points, double tolerance,
+                                  const RecoverThresholds& thresholds) {
+  VERISIM_ASSERT(is_positive(tolerance));
+  const Scaling scaling(points);
+  if (!(scaling.size > 0)) return std::nullopt;
+  SurfaceValue start = scaling.into(guess);
   settle(start);
-  return result_of(start, frame.into(points), frame, tolerance);
+  return result_of(start, scaling.into(points), scaling, tolerance, thresholds);
 }
 
 }  // namespace verisim::recover

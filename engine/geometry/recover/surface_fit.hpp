@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/geometry/recover.hpp"
 #include "engine/geometry/recover/surface_value.hpp"
 
 namespace verisim::recover {
@@ -21,15 +22,16 @@ struct Sample {
 
 /// The surface of this kind that is nearest to the points; none if they do not determine one. What stays many
 /// tolerances away [m] is given up early. A torus of negative major radius is the part of a tube that has passed the
-/// axis.
-[[nodiscard]] std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance);
+/// axis. @pre as many centers as normals; the tolerance is finite and above 0, here and below
+[[nodiscard]] std::optional<SurfaceValue> fit(Kind kind, const Sample& sample, double tolerance,
+                                              const RecoverThresholds& thresholds);
 /// The same from a first guess.
 [[nodiscard]] std::optional<SurfaceValue> refit(const SurfaceValue& guess, std::span<const Vector3d> points,
-                                                double tolerance);
+                                                double tolerance, const RecoverThresholds& thresholds);
 
 /// The circle nearest to points of a plane, algebraically: center and radius.
 [[nodiscard]] std::optional<Vector3d> circle_through(std::span<const Eigen::Vector2d> points);
-/// The plane nearest to points.
+/// The plane nearest to points. @pre there are some
 [[nodiscard]] SurfaceValue plane_through(std::span<const Vector3d> points);
 
 }  // namespace verisim::recover

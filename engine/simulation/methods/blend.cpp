@@ -53,15 +53,7 @@ class BlendPair final : public PairMethod {
   BlendParameters spring_;
 };
 
-class Blend final : public HybridMethod {
- public:
-  constexpr Blend() : HybridMethod("blend", 20) {}
-  [[nodiscard]] std::unique_ptr<PairMethod> make(const Pair& pair) const override {
-    return std::make_unique<BlendPair>(pair);
-  }
-};
-
-constinit const Blend kBlend;
+constinit const MethodByPair<BlendPair> kBlend("blend", 20);
 
 }  // namespace
 

@@ -25,15 +25,7 @@ class RestorePair final : public PairMethod {
   SetLookUp sets_;
 };
 
-class Restore final : public HybridMethod {
- public:
-  constexpr Restore() : HybridMethod("restore", 10) {}
-  [[nodiscard]] std::unique_ptr<PairMethod> make(const Pair& pair) const override {
-    return std::make_unique<RestorePair>(pair);
-  }
-};
-
-constinit const Restore kRestore;
+constinit const MethodByPair<RestorePair> kRestore("restore", 10);
 
 }  // namespace
 

@@ -2,65 +2,40 @@
 
 #include <algorithm>
 
+#include "engine/base/error.hpp"
+#include "engine/simulation/stages/neighbours.hpp"
 #include "engine/simulation/stages/pair_methods.hpp"
 
 namespace verisim {
-namespace {
-
-std::vector<BroadPhaseBody> boxes_of(const World& world) {
-  std::vector<BroadPhaseBody> boxes;
-  for (const Body& body : world.bodies) {
-    const Vector3d half = 0.5 * body.bounds_B.size() + Vector3d::Constant(grown_by(body));
-    boxes.push_back({body.bounds_B.center(), half, body.can_move});
-  }
-  return boxes;
-}
-
-std::unique_ptr<CollisionLink> link_between(const Body& first, const Body& second) {
-  if (!first.voxels || !second.voxels) return nullptr;
-  auto link = std::make_unique<CollisionLink>(*first.voxels, *second.voxels);
-  if (first.mesh) link->find_by_triangles(*first.mesh, *second.mesh);
-  return link;
-}
-
-}  // namespace
-
 Contacts::Contacts(const World& world)
-    : broad_phase_(boxes_of(world)),
-      link_of_pair_(world.bodies.size() * world.bodies.size(), kNone),
-      near_(world.links.size(), false),
-      of_body_(world.bodies.size(), 0),
-      p_WC_(world.bodies.size(), Vector3d::Zero()) {
-  for (std::size_t l = 0; l < world.links.size(); ++l) {
-    const auto [first, second] = world.links[l];
-    VERISIM_ASSERT(first < second);
-    VERISIM_ASSERT(second < world.bodies.size());
-    link_of_pair_[first * world.bodies.size() + second] = l;
-    links_.push_back(link_between(world.bodies[first], world.bodies[second]));
-  }
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) broad_phase_.set_pose(i, world.bodies[i].rigid.pose());
+    : of_body_(world.bodies.size(), 0), p_WC_(world.bodies.size(), Vector3d::Zero()) {}
+
+void Contacts::add_link(const World& world, std::size_t l) {
+  VERISIM_ASSERT(l == links_.size());
+  const Body& first = world.bodies[world.links[l].first];
+  const Body& second = world.bodies[world.links[l].second];
+  VERISIM_ASSERT(first.voxels != nullptr);
+  VERISIM_ASSERT(second.voxels != nullptr);
+  links_.push_back(std::make_unique<CollisionLink>(*first.voxels, *second.voxels));
+  if (first.mesh) links_.back()->find_by_triangles(*first.mesh, *second.mesh);
+  meets_.push_back(false);
 }
 
 Pose Contacts::X_AB(const World& world, std::size_t l) const {
-  VERISIM_ASSERT(links_[l] != nullptr);
+  VERISIM_ASSERT(l < links_.size());
   const Pose X_W1 = world.bodies[world.links[l].first].rigid.pose();
   const Pose X_W2 = world.bodies[world.links[l].second].rigid.pose();
   return links_[l]->first_is_map() ? X_W1.inverse() * X_W2 : X_W2.inverse() * X_W1;
 }
 
-void Contacts::query(const World& world, const PairMethods& methods, FrameCost& cost) {
-  std::fill(near_.begin(), near_.end(), false);
+void Contacts::query(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost) {
   std::fill(of_body_.begin(), of_body_.end(), 0);
-  for (const auto& link : links_)
-    if (link) link->clear();
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-    p_WC_[i] = world.bodies[i].rigid.p_WC;
-    if (world.bodies[i].can_move) broad_phase_.set_pose(i, world.bodies[i].rigid.pose());
-  }
-  for (const auto& [i, j] : broad_phase_.find()) {
-    const std::size_t l = link_of_pair_[i * world.bodies.size() + j];
-    if (!links_[l]) continue;
-    near_[l] = true;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) p_WC_[i] = world.bodies[i].rigid.p_WC;
+  for (const std::size_t l : world.near_links) {
+    links_[l]->clear();
+    const auto [i, j, number] = world.links[l];
+    meets_[l] = gap(neighbours.box(i), neighbours.box(j)) <= 0;
+    if (!meets_[l]) continue;
     ++cost.pairs_tested;
     const PairMethod* method = methods.acting(l);
     if (method != nullptr && !method->needs_voxels()) continue;
@@ -74,7 +49,7 @@ void Contacts::query(const World& world, const PairMethods& methods, FrameCost& 
 }
 
 void Contacts::query_link(const World& world, std::size_t l, FrameCost& cost) {
-  const auto [first, second] = world.links[l];
+  const auto [first, second, number] = world.links[l];
   QueryCost work;
   links_[l]->query(world.bodies[first].rigid.pose(), world.bodies[second].rigid.pose(), work);
   cost.clusters += work.clusters;

@@ -4,6 +4,11 @@
 
 namespace verisim {
 
+double spring_energy_of(const World& world, const Body& body) {
+  if (body.held_by == kNone) return 0;
+  return coupling_energy(body.coupling, coupling_force(body.coupling, body.rigid, target_of(world, body.held_by)));
+}
+
 EnergyState energy_of(const World& world) {
   const double shadow_dt = world.is_implicit() ? 0 : world.dt;
   EnergyState e;

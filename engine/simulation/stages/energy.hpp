@@ -7,6 +7,8 @@
 namespace verisim {
 
 [[nodiscard]] EnergyState energy_of(const World& world);
+/// J, of the coupling that holds a body. 0: nobody holds it.
+[[nodiscard]] double spring_energy_of(const World& world, const Body& body);
 
 class EnergyBook {
  public:

@@ -1,5 +1,6 @@
 #include "engine/simulation/stages/exact_response.hpp"
 
+#include "engine/base/error.hpp"
 #include "engine/simulation/stages/groups.hpp"
 
 namespace verisim {
@@ -17,17 +18,18 @@ double speed_of(const Body& body, const Vector6d& u) {
 
 }  // namespace
 
-ExactResponse::ExactResponse(const World& world, const PairMethods& methods)
-    : bodies_(world.bodies.size()), links_(world.links.size()), island_(world.bodies.size()) {
-  if (methods.any_precise()) solver_ = std::make_unique<exact::ConvexStep>(kRowsMax);
+void ExactResponse::add_link(const PairMethods& methods, std::size_t l) {
+  VERISIM_ASSERT(l == links_.size());
+  links_.emplace_back();
+  if (!solver_ && methods.is_precise(l)) solver_ = std::make_unique<exact::ConvexStep>(kRowsMax);
 }
 
-void ExactResponse::solve(const World& world, const Contacts& contacts, const PairMethods& methods,
+void ExactResponse::solve(const World& world, const Neighbours& neighbours, const PairMethods& methods,
                           const Response& response, FrameCost& cost) {
   if (!solver_) return;
   begin(world, response);
-  find(world, contacts, methods, cost);
-  join_bodies(world.links, island_, [&](std::size_t l) {
+  find(world, neighbours, methods, cost);
+  join_bodies(world, island_, [&](std::size_t l) {
     return links_[l].search != nullptr && !links_[l].search->rows().rows().empty() &&
            bodies_[world.links[l].first].solved && bodies_[world.links[l].second].solved;
   });
@@ -47,17 +49,18 @@ void ExactResponse::begin(const World& world, const Response& response) {
   }
 }
 
-void ExactResponse::find(const World& world, const Contacts& contacts, const PairMethods& methods, FrameCost& cost) {
-  for (std::size_t l = 0; l < links_.size(); ++l) {
+void ExactResponse::find(const World& world, const Neighbours& neighbours, const PairMethods& methods,
+                         FrameCost& cost) {
+  for (const std::size_t l : world.near_links) {
     links_[l] = {};
     exact::ExactLink* search = methods.acting(l) != nullptr ? methods.acting(l)->precise() : nullptr;
     if (search == nullptr) continue;
     const Link& link = world.links[l];
     const Body& first = world.bodies[link.first];
     const Body& second = world.bodies[link.second];
-    // The broad phase knows where bodies are, not how fast: a contact is to be there before the bodies overlap.
+    // The boxes know where bodies are, not how fast: a contact is to be there before the bodies overlap.
     const double reach = closing(world, link);
-    if (!contacts.near(l) && !(box_gap(first, second) <= grown_by(first) + grown_by(second) + reach)) continue;
+    if (!(gap(neighbours.box(link.first), neighbours.box(link.second)) <= reach)) continue;
     bodies_[link.first].solved = bodies_[link.first].solved || world.moves(first);
     bodies_[link.second].solved = bodies_[link.second].solved || world.moves(second);
     find(world, l, *search, reach);
@@ -102,10 +105,10 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
   }
   const auto in_solver = [&](std::size_t body) { return bodies_[body].in_solver; };
   const auto belongs = [&](std::size_t l) {
-    const auto [first, second] = world.links[l];
+    const auto [first, second, number] = world.links[l];
     return links_[l].search != nullptr && (in_solver(first) != exact::kFixed || in_solver(second) != exact::kFixed);
   };
-  for (std::size_t l = 0; l < links_.size(); ++l)
+  for (const std::size_t l : world.near_links)
     if (belongs(l))
       solver_->add_rows(links_[l].search->rows().rows(), in_solver(world.links[l].first),
                         in_solver(world.links[l].second));
@@ -118,7 +121,7 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
     of.wrench = solver_->wrench(of.in_solver);
   }
   std::size_t first_row = 0;
-  for (std::size_t l = 0; l < links_.size(); ++l) {
+  for (const std::size_t l : world.near_links) {
     if (!belongs(l)) continue;
     read_rows(world, l, first_row, cost);
     first_row += links_[l].search->rows().rows().size();

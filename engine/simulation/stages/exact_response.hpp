@@ -6,15 +6,17 @@
 #include <vector>
 
 #include "engine/exact/convex_step.hpp"
+#include "engine/simulation/stages/neighbours.hpp"
 #include "engine/simulation/stages/response.hpp"
 
 namespace verisim {
 
 class ExactResponse {
  public:
-  ExactResponse(const World& world, const PairMethods& methods);
+  explicit ExactResponse(const World& world) : bodies_(world.bodies.size()), island_(world.bodies.size()) {}
+  void add_link(const PairMethods& methods, std::size_t link);  ///< between frames
 
-  void solve(const World& world, const Contacts& contacts, const PairMethods& methods, const Response& response,
+  void solve(const World& world, const Neighbours& neighbours, const PairMethods& methods, const Response& response,
              FrameCost& cost);
 
   /// Does the body move with velocity(), under wrench(), in this frame?
@@ -27,6 +29,8 @@ class ExactResponse {
   [[nodiscard]] const Wrench& on_second(std::size_t link) const { return links_[link].on_second; }
   [[nodiscard]] std::uint32_t count(std::size_t link) const { return links_[link].acting; }  ///< rows that push
   [[nodiscard]] double depth_max(std::size_t link) const { return links_[link].depth_max; }  ///< m
+  /// Were the pair's precise contacts looked for in this frame?
+  [[nodiscard]] bool searched(std::size_t link) const { return links_[link].search != nullptr; }
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return bodies_[body].contacts; }
 
  private:
@@ -45,7 +49,7 @@ class ExactResponse {
     double depth_max = 0;
   };
   void begin(const World& world, const Response& response);
-  void find(const World& world, const Contacts& contacts, const PairMethods& methods, FrameCost& cost);
+  void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
   void solve_island(const World& world, std::size_t island, FrameCost& cost);

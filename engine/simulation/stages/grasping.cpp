@@ -7,6 +7,13 @@
 namespace verisim {
 namespace {
 
+std::string text_of_grasp(const World& world, const Note& note) {
+  return world.hands[note.first].device->name() + " holds " + world.bodies[note.second].name;
+}
+std::string text_of_release(const World& world, const Note& note) {
+  return world.hands[note.first].device->name() + " lets go of " + world.bodies[note.second].name;
+}
+
 Vector3d nearest_in_box(const Bounds& box, const Vector3d& p) {
   return p.cwiseMax(box.min).cwiseMin(box.max);
 }
@@ -55,45 +62,46 @@ std::size_t Grasping::nearest_body(const World& world, const Vector3d& p_W) cons
   return best;
 }
 
-void Grasping::update(World& world, std::vector<Event>& events) {
-  for (const Grasp& grasp : first_grasps_) take(world, grasp.device, grasp.body, true, events);
+void Grasping::update(World& world, Notes& notes) {
+  for (const Grasp& grasp : first_grasps_) take(world, grasp.device, grasp.body, true, notes);
   first_grasps_.clear();
   for (std::size_t h = 0; h < world.hands.size(); ++h) {
     const Hand& hand = world.hands[h];
     const DeviceReading& reading = hand.device->reading();
     if (hand.by_script) continue;
-    if (hand.body != kNone && !reading.button) let_go(world, h, events);
+    if (hand.body != kNone && !reading.button) let_go(world, h, notes);
     if (hand.body == kNone && reading.button && hand.device->driven()) {
       const std::size_t body = nearest_body(world, reading.handle.position);
-      if (body != kNone) take(world, h, body, false, events);
+      if (body != kNone) take(world, h, body, false, notes);
     }
   }
 }
 
-void Grasping::take(World& world, std::size_t h, std::size_t index, bool by_script, std::vector<Event>& events) {
+void Grasping::take(World& world, std::size_t h, std::size_t index, bool by_script, Notes& notes) {
   VERISIM_ASSERT(h < world.hands.size());
   VERISIM_ASSERT(index < world.bodies.size());
   Hand& hand = world.hands[h];
   Body& body = world.bodies[index];
-  if (hand.body != kNone) let_go(world, h, events);
-  if (body.held_by != kNone) let_go(world, body.held_by, events);
+  if (hand.body != kNone) let_go(world, h, notes);
+  if (body.held_by != kNone) let_go(world, body.held_by, notes);
   hand.body = index;
   hand.by_script = by_script;
   hand.X_HB = hand.device->reading().handle.inverse() * body.rigid.pose();
   body.held_by = h;
-  events.push_back({world.time(), "grasp", hand.device->name() + " holds " + body.name});
+  notes.add({.time = world.time(), .kind = "grasp", .text = text_of_grasp, .first = h, .second = index});
 }
 
-void Grasping::let_go(World& world, std::size_t h, std::vector<Event>& events) {
+void Grasping::let_go(World& world, std::size_t h, Notes& notes) {
   VERISIM_ASSERT(h < world.hands.size());
   Hand& hand = world.hands[h];
   if (hand.body == kNone) return;
-  Body& body = world.bodies[hand.body];
+  const std::size_t index = hand.body;
+  Body& body = world.bodies[index];
   body.held_by = kNone;
   hand.body = kNone;
   hand.by_script = false;
   if (!world.parameters.all_bodies_are_dynamic) body.rigid.v_C = body.rigid.omega = Vector3d::Zero();
-  events.push_back({world.time(), "release", hand.device->name() + " lets go of " + body.name});
+  notes.add({.time = world.time(), .kind = "release", .text = text_of_release, .first = h, .second = index});
 }
 
 CouplingTarget target_of(const World& world, std::size_t h) {

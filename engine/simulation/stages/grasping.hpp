@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/simulation/stages/notes.hpp"
 #include "engine/simulation/world.hpp"
 
 namespace verisim {
@@ -15,11 +16,11 @@ class Grasping {
 
   /// Raw pose to virtual handle, of every device. Error(diverged) for one that is not finite.
   void sample(World& world);
-  /// Takes and lets go as the buttons say. Events: grasp, release.
-  void update(World& world, std::vector<Event>& events);
+  /// Takes and lets go as the buttons say. Notes: grasp, release.
+  void update(World& world, Notes& notes);
 
-  static void take(World& world, std::size_t hand, std::size_t body, bool by_script, std::vector<Event>& events);
-  static void let_go(World& world, std::size_t hand, std::vector<Event>& events);
+  static void take(World& world, std::size_t hand, std::size_t body, bool by_script, Notes& notes);
+  static void let_go(World& world, std::size_t hand, Notes& notes);
 
  private:
   [[nodiscard]] std::size_t nearest_body(const World& world, const Vector3d& p_W) const;

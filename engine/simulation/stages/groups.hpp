@@ -8,18 +8,19 @@
 namespace verisim {
 
 /// Writes for every body the number of the first body of those that the links joined it to, its own if none did.
-/// `joins(link)` says of a link's number whether it does. Costs about bodies + links.
+/// `joins(link)` says of a near link whether it does. Costs about bodies + near links.
 template <typename Joins>
-void join_bodies(const std::vector<Link>& links, std::vector<std::size_t>& group, const Joins& joins) {
+void join_bodies(const World& world, std::vector<std::size_t>& group, const Joins& joins) {
   for (std::size_t i = 0; i < group.size(); ++i) group[i] = i;
   const auto first_of = [&](std::size_t i) {
     while (group[i] != i) i = group[i];
     return i;
   };
-  for (std::size_t l = 0; l < links.size(); ++l) {
+  for (const std::size_t l : world.near_links) {
     if (!joins(l)) continue;
-    VERISIM_ASSERT(links[l].second < group.size());
-    const auto [low, high] = std::minmax({first_of(links[l].first), first_of(links[l].second)});
+    const Link& link = world.links[l];
+    VERISIM_ASSERT(link.second < group.size());
+    const auto [low, high] = std::minmax({first_of(link.first), first_of(link.second)});
     group[high] = low;
   }
   for (std::size_t& of : group) of = group[of];  // low before high: that one is final

@@ -23,13 +23,18 @@ constexpr std::array kNotices = {
            "the exact response ended before its minimum (/cost/solver_unfinished); use a smaller time step"},
 };
 
+std::string text_of_notice(const World&, const Note& note) {
+  return kNotices[note.first].text;
+}
+
 }  // namespace
 
-void LeftOut::tell(const FrameCost& cost, double time, std::vector<Event>& events) {
-  for (const Notice& notice : kNotices) {
-    if (cost.*notice.count == 0 || told_.*notice.count != 0) continue;
-    told_.*notice.count = 1;
-    events.push_back({time, "left out", notice.text});
+void LeftOut::tell(const FrameCost& cost, double time, Notes& notes) {
+  for (std::size_t i = 0; i < kNotices.size(); ++i) {
+    const auto count = kNotices[i].count;
+    if (cost.*count == 0 || told_.*count != 0) continue;
+    told_.*count = 1;
+    notes.add({.time = time, .kind = "left out", .text = text_of_notice, .first = i});
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/dynamics/ledger.hpp"
 #include "engine/simulation/stages/passivity.hpp"
 
@@ -15,8 +16,11 @@ class Motion {
   /// Error(diverged) with frame and body if a state stops being finite.
   void advance(World& world, const Response& response, const ExactResponse& exact, const Passivity& passivity,
                Ledger& ledger);
-  /// @pre the body moves
-  [[nodiscard]] const StepWork& work(std::size_t body) const { return work_[body]; }
+  /// Of a body that has never moved: nothing. @pre there is such a body
+  [[nodiscard]] const StepWork& work(std::size_t body) const {
+    VERISIM_ASSERT(body < work_.size());
+    return work_[body];
+  }
 
  private:
   std::vector<StepWork> work_;

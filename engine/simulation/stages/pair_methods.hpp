@@ -12,8 +12,10 @@ namespace verisim {
 
 class PairMethods {
  public:
-  /// Makes them. Adds to `events` where a method was asked for and cannot act.
-  PairMethods(const World& world, const Contacts& contacts, std::vector<Event>& events);
+  /// Between frames: makes the pair's.
+  void add_link(const World& world, const Contacts& contacts, std::size_t link);
+  /// Adds to `events` if a method was asked for and cannot act on the pair.
+  static void tell(const World& world, std::size_t link, std::vector<Event>& events);
 
   /// Which of them act in this frame.
   void choose(const World& world);
@@ -22,13 +24,14 @@ class PairMethods {
   [[nodiscard]] LookUps look_ups(std::size_t link) const {
     return acting_[link] != nullptr ? acting_[link]->look_ups() : LookUps{};
   }
-  /// Does any pair have a method that searches for precise contacts?
-  [[nodiscard]] bool any_precise() const { return any_precise_; }
+  /// Does the pair's method search for precise contacts?
+  [[nodiscard]] bool is_precise(std::size_t link) const {
+    return methods_[link] != nullptr && methods_[link]->precise() != nullptr;
+  }
 
  private:
   std::vector<std::unique_ptr<PairMethod>> methods_;
   std::vector<PairMethod*> acting_;
-  bool any_precise_ = false;
 };
 
 }  // namespace verisim

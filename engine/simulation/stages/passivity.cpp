@@ -9,8 +9,7 @@
 namespace verisim {
 
 Passivity::Passivity(const World& world)
-    : link_watched_(world.links.size(), false),
-      watched_(world.bodies.size(), false),
+    : watched_(world.bodies.size(), false),
       group_(world.bodies.size()),
       work_(world.bodies.size()),
       scale_(world.bodies.size(), 1) {}
@@ -18,10 +17,12 @@ Passivity::Passivity(const World& world)
 bool Passivity::watch_links(const World& world, const Contacts& contacts, const PairMethods& methods) {
   std::fill(watched_.begin(), watched_.end(), false);
   bool any = false;
-  for (std::size_t l = 0; l < link_watched_.size(); ++l) {
+  for (const std::size_t l : world.near_links) {
     const bool touches = contacts.touches(l);
-    link_watched_[l] = methods.acting(l) != nullptr || (link_watched_[l] && touches);
-    if (!touches || !link_watched_[l]) continue;
+    const bool before = watched_in_[l] != kNone && watched_in_[l] + 1 == world.frame;
+    if (methods.acting(l) == nullptr && !(before && touches)) continue;
+    watched_in_[l] = world.frame;
+    if (!touches) continue;
     watched_[world.links[l].first] = watched_[world.links[l].second] = true;
     any = true;
   }
@@ -33,7 +34,7 @@ void Passivity::bound(const World& world, const Contacts& contacts, const PairMe
   std::fill(scale_.begin(), scale_.end(), 1);
   if (!watch_links(world, contacts, methods) || !world.parameters.passive_contacts) return;
   const auto in_a_group = [&](std::size_t i) { return world.moves(world.bodies[i]) && !exact.solved(i); };
-  join_bodies(world.links, group_, [&](std::size_t l) {
+  join_bodies(world, group_, [&](std::size_t l) {
     return contacts.touches(l) && in_a_group(world.links[l].first) && in_a_group(world.links[l].second);
   });
   bound_groups(world, response, exact, ledger.contact());

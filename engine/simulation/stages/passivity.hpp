@@ -16,6 +16,7 @@ namespace verisim {
 class Passivity {
  public:
   explicit Passivity(const World& world);
+  void add_link() { watched_in_.push_back(kNone); }  ///< between frames
 
   /// Finds the scale of each body's contact forces in this frame.
   void bound(const World& world, const Contacts& contacts, const PairMethods& methods, const Response& response,
@@ -27,7 +28,8 @@ class Passivity {
   [[nodiscard]] bool watch_links(const World& world, const Contacts& contacts, const PairMethods& methods);
   void bound_groups(const World& world, const Response& response, const ExactResponse& exact, double budget);
 
-  std::vector<bool> link_watched_;  ///< since its method changed something, until the two bodies part
+  /// The last frame in which a link was watched: since its method changed something, until the two bodies part.
+  std::vector<std::uint64_t> watched_in_;
   std::vector<bool> watched_;       ///< bodies, groups by their first body
   std::vector<std::size_t> group_;  ///< of each body: the first body of its group
   std::vector<ContactWork> work_;   ///< of groups, by their first body

@@ -30,20 +30,20 @@ void Reactions::find(const World& world, const Contacts& contacts, const Respons
                      const Motion& motion) {
   for (std::size_t i = 0; i < on_body_.size(); ++i)
     on_body_[i] = world.moves(world.bodies[i]) ? motion.work(i).contact : Wrench{};
-  for (std::size_t l = 0; l < world.links.size(); ++l) {
-    const auto [i, j] = world.links[l];
+  for (const std::size_t l : world.near_links) {
+    const auto [i, j, number] = world.links[l];
     const Body& first = world.bodies[i];
     const Body& second = world.bodies[j];
     on_second_[l] = exact.on_second(l);
-    Wrench on_first = reaction(on_second_[l], contacts.found_at(j), contacts.found_at(i));
+    on_first_[l] = reaction(on_second_[l], contacts.found_at(j), contacts.found_at(i));
     if (contacts.touches(l)) {
       const LinkSides& sides = response.sides(l);
       const SideOfLink one{sides.first, first, motion.work(i).contact_end, contacts.found_at(i), exact.solved(i)};
       const SideOfLink two{sides.second, second, motion.work(j).contact_end, contacts.found_at(j), exact.solved(j)};
-      on_first += applied(world, one, two);
+      on_first_[l] += applied(world, one, two);
       on_second_[l] += applied(world, two, one);
     }
-    if (!world.moves(first)) on_body_[i] += on_first;
+    if (!world.moves(first)) on_body_[i] += on_first_[l];
     if (!world.moves(second)) on_body_[j] += on_second_[l];
   }
 }

@@ -16,7 +16,7 @@ void add(Loads& loads, const LinkSide& side) {
 
 }  // namespace
 
-Response::Response(const World& world) : bodies_(world.bodies.size()), sides_(world.links.size()) {}
+Response::Response(const World& world) : bodies_(world.bodies.size()) {}
 
 void Response::pull(const World& world) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -46,7 +46,7 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
     of.link_body = {body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), 0};
     if (world.moves(body)) of.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
   }
-  for (std::size_t l = 0; l < world.links.size(); ++l) {
+  for (const std::size_t l : world.near_links) {
     if (!contacts.touches(l)) continue;
     ++bodies_[world.links[l].first].links_touching;
     ++bodies_[world.links[l].second].links_touching;
@@ -59,7 +59,7 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
 
 void Response::respond(const World& world, const Contacts& contacts, const PairMethods& methods, FrameCost& cost) {
   prepare_bodies(world, contacts);
-  for (std::size_t l = 0; l < world.links.size(); ++l) {
+  for (const std::size_t l : world.near_links) {
     if (!contacts.touches(l)) continue;
     respond(world, l, contacts, methods.acting(l));
     const LookUps found = methods.look_ups(l);
@@ -74,7 +74,7 @@ void Response::respond(const World& world, const Contacts& contacts, const PairM
 void Response::respond(const World& world, std::size_t l, const Contacts& contacts, PairMethod* method) {
   const LinkBody& first = bodies_[world.links[l].first].link_body;
   const LinkBody& second = bodies_[world.links[l].second].link_body;
-  CollisionLink& link = *contacts.link(l);
+  CollisionLink& link = contacts.link(l);
   LinkSides& sides = sides_[l];
   const bool implicit = world.is_implicit();
   const SimulationParameters& p = world.parameters;

@@ -15,6 +15,7 @@ namespace verisim {
 class Response {
  public:
   explicit Response(const World& world);
+  void add_link() { sides_.emplace_back(); }  ///< between frames
 
   /// Weight and coupling, from the handles as sampled.
   void pull(const World& world);

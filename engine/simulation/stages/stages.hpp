@@ -7,24 +7,40 @@
 #include "engine/simulation/stages/exact_response.hpp"
 #include "engine/simulation/stages/grasping.hpp"
 #include "engine/simulation/stages/motion.hpp"
+#include "engine/simulation/stages/neighbours.hpp"
+#include "engine/simulation/stages/pair_energy.hpp"
 #include "engine/simulation/stages/pair_methods.hpp"
 #include "engine/simulation/stages/passivity.hpp"
 #include "engine/simulation/stages/reactions.hpp"
 #include "engine/simulation/stages/response.hpp"
+#include "engine/simulation/stages/tunnelling.hpp"
 
 namespace verisim {
 
 struct Stages {
-  Stages(const Scene& scene, const World& world, std::vector<Event>& events)
+  Stages(const Scene& scene, const World& world)
       : grasping(scene.grasps, scene.grasp_distance),
         energy(world),
         contacts(world),
-        methods(world, contacts, events),
         response(world),
-        exact(world, methods),
+        exact(world),
         passivity(world),
         motion(world),
-        reactions(world) {}
+        reactions(world),
+        tunnelling(world),
+        neighbours(world) {}
+
+  /// Between frames: what each keeps of a link. @pre its bodies are made
+  void add_link(const World& world, std::size_t link) {
+    contacts.add_link(world, link);
+    methods.add_link(world, contacts, link);
+    response.add_link();
+    exact.add_link(methods, link);
+    passivity.add_link();
+    reactions.add_link();
+    pair_energy.add_link();
+    neighbours.add_link(world, link);
+  }
 
   Grasping grasping;
   EnergyBook energy;
@@ -35,6 +51,9 @@ struct Stages {
   Passivity passivity;
   Motion motion;
   Reactions reactions;
+  Tunnelling tunnelling;
+  PairEnergy pair_energy;
+  Neighbours neighbours;
 };
 
 }  // namespace verisim

@@ -1,0 +1,123 @@
+#include "engine/simulation/body_maker.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/base/error.hpp"
+#include "engine/geometry/merged.hpp"
+#include "engine/simulation/hybrid_method.hpp"
+#include "engine/voxel/association.hpp"
+#include "engine/voxel/limits.hpp"
+#include "engine/voxel/voxelize.hpp"
+
+namespace verisim {
+namespace {
+
+void forget_brep(Part& part) {
+  part.faces.clear();
+  part.edges.clear();
+  part.mesh.face_of_triangle.clear();
+}
+
+VoxelizeOptions voxel_options(const BodyDescription& description, unsigned threads) {
+  VoxelizeOptions options;
+  options.voxel_size = description.voxel_size;
+  options.point_spacing = description.point_spacing;
+  options.threads = threads;
+  return options;
+}
+
+void check_voxels(const BodyDescription& description) {
+  const Part part = merged(description.parts);
+  check_voxel_size(description.name, part.mesh, checked_bounds(description.name, part.mesh),
+                   voxel_options(description, 1));
+}
+
+/// How far from where bodies start their surfaces can get.
+class Reach {
+ public:
+  explicit Reach(const World& world) : world_(world) {
+    for (const Hand& hand : world.hands) travel_ = std::max(travel_, hand.device->travel());
+    for (const Body& body : world.bodies) boxes_.push_back(world_box(body));
+  }
+  [[nodiscard]] bool can_meet(std::size_t i, std::size_t j) const {
+    const Body& a = world_.bodies[i];
+    const Body& b = world_.bodies[j];
+    return (a.can_move || b.can_move) && gap(boxes_[i], boxes_[j]) <= of(a) + of(b);
+  }
+  [[nodiscard]] bool can_meet_another(std::size_t i) const {
+    for (std::size_t j = 0; j < world_.bodies.size(); ++j)
+      if (i != j && can_meet(i, j)) return true;
+    return false;
+  }
+
+ private:
+  /// m; infinite for what flies freely.
+  [[nodiscard]] double of(const Body& body) const {
+    if (!body.can_move) return 0;
+    if (world_.parameters.all_bodies_are_dynamic) return std::numeric_limits<double>::infinity();
+    return travel_ + body.bounds_B.size().norm();  // a body that turns sweeps its own size
+  }
+
+  const World& world_;
+  double travel_ = 0;
+  std::vector<Bounds> boxes_;
+};
+
+}  // namespace
+
+bool will_be_exact(const BodyDescription& body, Hybrid method) {
+  if (!method->needs_precise_surfaces() || !body.use_brep) return false;
+  const auto is_known = [](const Face& face) { return !std::holds_alternative<OtherSurface>(face.surface); };
+  return std::any_of(body.parts.begin(), body.parts.end(),
+                     [&](const Part& part) { return std::any_of(part.faces.begin(), part.faces.end(), is_known); });
+}
+
+void BodyMaker::begin(World& world) {
+  const Reach reach(world);
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (reach.can_meet_another(i)) check_voxels(bodies_[i]);
+  if (world.hands.empty()) return;
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (world.bodies[i].selectable && reach.can_meet_another(i)) make(world, i);
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> BodyMaker::pairs_that_can_meet(const World& world) const {
+  const Reach reach(world);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < world.bodies.size(); ++j)
+      if (reach.can_meet(i, j)) pairs.emplace_back(i, j);
+  return pairs;
+}
+
+void BodyMaker::make(World& world, std::size_t i) {
+  Body& body = world.bodies[i];
+  if (body.voxels) return;
+  const BodyDescription& description = bodies_[i];
+  voxelize_body(world, description, body);
+  const BodyFeatures& features = body.voxels->features;
+  if (features.entity_count() > 0) {
+    body.entities = std::make_unique<EntitySets>(features.faces, features.edges, features.sets);
+    if (body.method->needs_precise_surfaces() && description.use_brep) {
+      exact::BodyOptions options;
+      options.spacing = description.voxel_size;
+      auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
+      if (precise->has_precise_faces()) body.exact = std::move(precise);
+    }
+  }
+  bodies_[i] = {};
+}
+
+void BodyMaker::voxelize_body(const World& world, const BodyDescription& description, Body& body) const {
+  Part part = merged(description.parts);
+  if (!description.use_brep) forget_brep(part);
+  auto voxels =
+      std::make_shared<VoxelBody>(voxelize(description.name, part.mesh, voxel_options(description, threads_)));
+  if (body.method->needs_entities() && (part.has_brep() || description.declared))
+    associate(description.name, part, {.threads = threads_, .declared = description.declared.get()}, *voxels);
+  body.voxels = std::move(voxels);
+  if (world.parameters.contact == ContactMethod::fcl) body.mesh = std::make_unique<MeshTree>(part.mesh);
+}
+
+}  // namespace verisim

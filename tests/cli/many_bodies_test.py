@@ -1,0 +1,152 @@
+"""Scenes of hundreds of bodies: they start, run and leave a file; what pairs record stands in one table."""
+import json
+import os
+import resource
+import subprocess
+import unittest
+
+import h5py
+import numpy
+
+from program import SMALL, VERISIM, ProgramTest, dense
+
+GRID = """
+local p = params{ bodies = 48, moving = 48, pitch = 0.03, spin = 0, duration = 0.02 }
+defineSimulationParameters{ allBodiesAreDynamic = true, gravity = {0, 0, -9.81}, duration = p.duration, hybrid = "off" }
+local side = math.ceil(p.bodies ^ (1 / 3))
+for i = 0, p.bodies - 1 do
+  addObject{ name = "b" .. i, density = 1000, voxelsize = 0.004, fixed = i >= p.moving,
+             position = {i % side * p.pitch, math.floor(i / side) % side * p.pitch, math.floor(i / side / side) * p.pitch},
+             Solid.box{0.02, 0.02, 0.02} }
+end
+"""
+
+
+class ManyBodies(ProgramTest):
+    def grid(self, **parameters):
+        """Summary and run file of a grid of boxes."""
+        run_file = self.path("run.h5")
+        sets = [word for key, value in parameters.items() for word in ("--set", f"{key}={value}")]
+        summary = self.run_json("run", self.write("grid.lua", GRID), "-o", run_file, *sets)
+        return summary, run_file
+
+    def test_every_number_of_free_bodies_leaves_its_file(self):
+        for bodies in (1, 2, 20, 48, 80, 300):
+            summary, run_file = self.grid(bodies=bodies, moving=bodies)
+            with h5py.File(run_file) as f:
+                self.assertEqual(len(f["state/body"]), bodies)
+                self.assertEqual(f["state/time"].shape, (summary["frames"],))
+                self.assertEqual(f["cost/links"][()].sum(), len(f["state/links/frame"]))
+                self.assertEqual(f["cost/pairs_met"][()].sum(), len(f["state/pairs"]))
+
+    def test_nine_hundred_fixed_bodies_and_one_that_moves(self):
+        summary, run_file = self.grid(bodies=901, moving=1)
+        with h5py.File(run_file) as f:
+            self.assertEqual(summary["frames"], len(f["state/time"]))
+            self.assertTrue(all(b"b0" in tuple(pair) for pair in f["state/pairs"][()]), "of the one that moves")
+
+    def test_a_thousand_bodies_of_which_three_move_start_soon_and_small(self):
+        scenario = self.write("grid.lua", GRID)
+        run = subprocess.Popen([VERISIM, "run", scenario, "-o", self.path("run.h5"), "--json", "--set", "bodies=1000",
+                                "--set", "moving=3", "--set", "pitch=0.021"], stdout=subprocess.PIPE)
+        summary = json.loads(run.stdout.read())
+        _, status, used = os.wait4(run.pid, 0)
+        run.returncode = status
+        run.stdout.close()
+        self.assertEqual(status, 0)
+        if not os.environ["VERISIM_SANITIZE"]:
+            self.assertLess(summary["load_s"], 5)
+            self.assertLess(used.ru_maxrss, 500e3, "kB")
+        self.assertGreater(summary["collision_frames"], 0)
+
+    def test_bodies_fall_together_and_pay_for_what_is_near(self):
+        summary, run_file = self.grid(bodies=64, pitch=0.0201, duration=0.05)
+        with h5py.File(run_file) as f:
+            pairs, links, frames = len(f["state/pairs"]), len(f["state/links/frame"]), summary["frames"]
+            self.assertGreater(pairs, 100)
+            self.assertLess(pairs, 64 * 63 / 2)
+            self.assertLessEqual(links, pairs * frames)
+            keys = f["state/links/frame"][()].astype(numpy.int64) * pairs + f["state/links/pair"][()]
+            self.assertEqual(len(numpy.unique(keys)), links, "a pair has one row in a frame")
+            self.assertTrue((numpy.diff(f["state/links/frame"][()].astype(int)) >= 0).all(), "sorted by frame")
+            near = [e for e in f["events"] if e["kind"] == b"near"]
+            self.assertEqual(len(near), pairs)
+
+    def test_a_paced_run_makes_all_before_and_records_the_same(self):
+        scenario = self.write("grid.lua", GRID)
+        files = [self.path("free.h5"), self.path("paced.h5")]
+        options = ["--set", "bodies=27", "--set", "moving=9", "--set", "pitch=0.022", "--set", "duration=0.1"]
+        for file, paced in zip(files, ([], ["--realtime"])):
+            self.succeed("run", scenario, "-o", file, *options, *paced)
+        with h5py.File(files[0]) as free, h5py.File(files[1]) as paced:
+            self.assertEqual(free.attrs["state_hash"], paced.attrs["state_hash"])
+            for name in ("events", "state/pairs", "state/links/frame", "state/links/wrench", "cost/pairs_met"):
+                self.assertEqual(free[name][()].tobytes(), paced[name][()].tobytes(), name)
+
+    def test_a_body_that_cannot_be_made_when_it_is_met_ends_the_run_with_its_file(self):
+        """Within its reach everything is checked before the first frame; where a script puts a body is not foreseen."""
+        scenario = self.write("far.lua", """
+            defineSimulationParameters{ duration = 0.1 }
+            addObject{ name = "far", fixed = true, voxelsize = 3, position = {50, 0, 0}, Solid.box{0.1, 0.1, 0.1} }
+            local box = addObject{ name = "box", voxelsize = 0.01, Solid.box{0.1, 0.1, 0.1} }
+            local hand = Devices.Hand{ name = "hand", path = { {position = {0, 0, 0}} } }
+            addDevice(hand)
+            grasp(hand, box)
+            Actions.addFrameAction(function()
+              Actions.waitSeconds(0.05)
+              box.position = {50, 0, 0.02}
+            end)""")
+        run_file = self.path("far.h5")
+        done = self.run_program("run", scenario, "-o", run_file)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("error: far: voxelsize is 3 m", done.stderr)
+        with h5py.File(run_file) as f:
+            self.assertGreaterEqual(len(f["state/time"]), 50)
+            self.assertEqual(f["summary"].attrs["frames"], len(f["state/time"]))
+
+
+class FormatOne(ProgramTest):
+    """Files of format 1: dense columns for every pair that could meet, under /state/link."""
+
+    def as_format_1(self, run_file):
+        """Writes a run file of one pair as the first version did."""
+        with h5py.File(run_file, "r+") as f:
+            (pair,) = f["state/pairs"][()]
+            first, second = pair["first"].decode(), pair["second"].decode()
+            for fact in f["state/links"]:
+                if fact in ("frame", "pair", "by_voxels"):
+                    continue
+                old = f[f"state/links/{fact}"]
+                new = f.create_dataset(f"state/link/{first}~{second}/{fact}", data=dense(f, first, second, fact),
+                                       dtype=old.dtype)
+                for key in ("units", "description", "order", *(["names"] if "names" in old.attrs else [])):
+                    new.attrs[key] = old.attrs[key]
+            events, attributes = f["events"][()], dict(f["events"].attrs)
+            for name in ("events", "state/links", "state/pairs", "cost/links", "cost/pairs_met"):
+                del f[name]
+            f.create_dataset("events", data=events[events["kind"] != b"near"]).attrs.update(attributes)
+            columns = []  # the state first, then its hash, then all else
+            f.visititems(lambda name, item: columns.append((not name.startswith("state"), name == "state/hash", name))
+                         if "order" in item.attrs and not name.startswith("inputs") else None)
+            for order, (_, _, name) in enumerate(sorted(columns)):
+                f[name].attrs["order"] = numpy.int64(order)
+            f.attrs["columns"] = numpy.int64(len(columns))
+            f.attrs["format_version"] = numpy.int64(1)
+            del f.attrs["checksums"]
+
+    def test_is_read_replayed_and_verified(self):
+        run_file = self.path("run.h5")
+        summary = self.run_json("run", self.write("small.lua", SMALL), "-o", run_file)
+        self.assertGreater(summary["collision_frames"], 0)
+        self.as_format_1(run_file)
+        done = self.succeed("replay", run_file, "--verify")
+        self.assertIn("format 1", done.stderr)
+        with h5py.File(run_file, "r+") as f:
+            (name,) = f["state/link"]
+            f[f"state/link/{name}/wrench"][-1, 2] += 1
+        self.refuse(1, ["/state/links/wrench of plate~box[2]", f"frame {summary['frames'] - 1}"], "replay", run_file,
+                    "--verify")
+
+
+if __name__ == "__main__":
+    unittest.main()
