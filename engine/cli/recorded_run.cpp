@@ -1,7 +1,5 @@
 #include "engine/cli/recorded_run.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,6 +8,7 @@
 #include "engine/base/text.hpp"
 #include "engine/cli/interrupts.hpp"
 #include "engine/cli/memory_wanted.hpp"
+#include "engine/cli/progress_line.hpp"
 #include "engine/cli/realtime_priority.hpp"
 #include "engine/record/file_replace.hpp"
 #include "engine/record/output_place.hpp"
@@ -19,14 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::function<void(std::uint64_t)> progress_bar(std::uint64_t frames, bool wanted) {
-  if (!wanted || isatty(STDERR_FILENO) == 0) return {};
-  return [frames](std::uint64_t done) {
-    constexpr int kWidth = 40;
-    const int filled = static_cast<int>(kWidth * done / frames);
-    std::fprintf(stderr, "\r  [%-*s] %3d %%", kWidth, std::string(static_cast<std::size_t>(filled), '=').c_str(),
-                 static_cast<int>(100 * done / frames));
-    std::fflush(stderr);
+std::function<void(std::uint64_t)> progress_bar(std::uint64_t frames, const ProgressLine& line) {
+  if (!line.is_shown()) return {};
+  return [frames, &line](std::uint64_t done) {
+    constexpr std::uint64_t kWidth = 40;
+    line.say(fmt::format("  [{:{}}] {:3} %", std::string(kWidth * done / frames, '='), kWidth, 100 * done / frames));
   };
 }
 
@@ -99,9 +95,10 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
   loop.paced = options.paced;
   loop.empty_block = options.empty_block;
   loop.finished = [&] { return session.scenario->finished(); };
-  loop.progress = progress_bar(loop.frames, options.progress);
   RecordedRun run;
   {
+    const ProgressLine line(options.progress);
+    loop.progress = progress_bar(loop.frames, line);
     const RealtimePriority priority(options.paced);  // the recorder's thread has started without it
     if (options.paced && options.progress && !priority.granted())
       std::fputs(
@@ -111,7 +108,6 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
     run.loop = run_loop(simulation, recorder.get(), loop);
     run.loop.realtime_priority = priority.granted();
   }
-  if (loop.progress) std::fprintf(stderr, "\r%60s\r", "");
   if (options.progress)
     for (const std::string& warning : run.loop.warnings) std::fprintf(stderr, "warning: %s\n", shown(warning).c_str());
   run.figures = figures_of(session, run.loop, file);

@@ -6,6 +6,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/json_text.hpp"
+#include "engine/cli/progress_line.hpp"
 #include "engine/cli/recorded_run.hpp"
 #include "engine/cli/stop_watch.hpp"
 #include "engine/record/file_replace.hpp"
@@ -134,10 +135,14 @@ void run_reproduce(const ReproduceOptions& o) {
   std::vector<Row> rows;
   for (const Reproduction& r : reproduce::reproductions()) {
     if (!is_wanted(o, r)) continue;
-    if (!o.quiet) std::fprintf(stderr, "%-4s %-40s ", r.id, r.what);
+    const std::string name = fmt::format("{:<4} {:<40}", r.id, r.what);
     const StopWatch watch;
-    for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
-    if (!o.quiet) std::fprintf(stderr, "%6.1f s\n", watch.seconds());
+    {
+      const ProgressLine line(!o.quiet);
+      line.say(name);
+      for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
+    }
+    if (!o.quiet) std::fprintf(stderr, "%s %6.1f s\n", name.c_str(), watch.seconds());
   }
   std::printf("%s%s", o.json ? json_of_rows(rows).c_str() : table_of(rows).c_str(), o.json ? "\n" : "");
 }

@@ -170,6 +170,24 @@ std::vector<Part> finished_meshes(const Message& answer, const std::string& path
   return parts;
 }
 
+/// No machine's part is larger or smaller, and inertias (m^5) stay numbers that a double holds well.
+void check_size(const Part& part, const std::string& path) {
+  constexpr double kLongest = 1e9;    // m
+  constexpr double kShortest = 1e-9;  // m
+  if (part.mesh.triangles.empty()) return;
+  const Bounds bounds = bounds_of(part.mesh);
+  const double farthest = bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).maxCoeff();
+  const double longest = bounds.size().maxCoeff();
+  if (!(farthest <= kLongest) || !(longest >= kShortest))
+    fail(ErrorKind::input,
+         "{}: part '{}' measures {:.4g} m and reaches to {:.4g} m from its origin; parts of {} to {} m "
+         "are read: check its scale",
+         path, part.name, longest, farthest, kShortest, kLongest);
+  if (!std::isfinite(part.mass.volume) || !std::isfinite(part.area) || !part.mass.centroid.allFinite() ||
+      !part.mass.inertia.allFinite())
+    fail(ErrorKind::input, "{}: part '{}' has no finite volume; export it again", path, part.name);
+}
+
 /// "Bolt", "Bolt#2", "Bolt#3": the first keeps its name.
 void make_names_unique(std::vector<Part>& parts, const std::string& nameless) {
   for (Part& part : parts) part.name = shown(part.name, kLongestName);  // other people's files may hold anything
@@ -199,6 +217,7 @@ std::vector<Part> load_model(const std::string& path, const std::string& content
   const Message answer = ask_cad({{"request", std::move(request)}}, path);
   std::vector<Part> parts = family == Family::mesh ? finished_meshes(answer, path) : parts_from(answer);
   make_names_unique(parts, std::filesystem::path(path).stem().string());
+  for (const Part& part : parts) check_size(part, path);
   for (Part& part : parts) {
     if (options.recover && !part.has_brep()) recover_brep(part);
   }

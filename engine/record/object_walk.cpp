@@ -65,7 +65,8 @@ class Walk {
   void visit(const std::string& path, std::size_t depth) {
     const Handle object(check(H5Oopen(file_, path.c_str(), H5P_DEFAULT), path.c_str()), H5Oclose);
     H5O_info_t info;
-    check_status(H5Oget_info2(object, &info, H5O_INFO_BASIC), path.c_str());
+    // All: reads every index of the object, also those that only other readers use (a visit in order of creation).
+    check_status(H5Oget_info2(object, &info, H5O_INFO_ALL), path.c_str());
     if (!seen_.insert(info.addr).second) throw Failure(path + " is the same object as another: groups in a circle");
     if (info.type == H5O_TYPE_GROUP) groups_.emplace_back(path == "/" ? path : path + "/", depth);
     if (info.type != H5O_TYPE_DATASET) return;

@@ -123,6 +123,7 @@ void* Sandbox::resize(void* block, std::size_t old_size, std::size_t new_size) {
   const std::size_t old_bytes = block == nullptr ? 0 : bytes_taken(old_size);
   const std::size_t new_bytes = bytes_taken(new_size);
   if (new_size == 0) {
+    if (block != nullptr) destroy_content(block);
     std::free(old_start);
     memory_used_ -= old_bytes;
     return nullptr;
@@ -138,11 +139,29 @@ void* Sandbox::resize(void* block, std::size_t old_size, std::size_t new_size) {
   if (start == nullptr) return nullptr;
   memory_used_ = memory_used_ - old_bytes + new_bytes;
   if (old_start == nullptr) {
-    const BlockHeader header{.order = ++blocks_made_, .shown = 0, .unused = 0};
+    const BlockHeader header{.order = ++blocks_made_, .shown = 0, .destroyer = 0};
     std::memcpy(start, &header, sizeof header);
   }
   newest_block_ = start + sizeof(BlockHeader);
   return newest_block_;
+}
+
+std::uint32_t Sandbox::destroyer(void (*destroy)(void* content)) {
+  const auto known = std::find(destroyers_.begin(), destroyers_.end(), destroy);
+  const auto place = static_cast<std::uint32_t>(known - destroyers_.begin());
+  if (known == destroyers_.end()) destroyers_.push_back(destroy);
+  return place + 1;
+}
+
+void Sandbox::destroy_later(lua_State* L, int index, std::uint32_t destroyer) {
+  VERISIM_ASSERT(lua_type(L, index) == LUA_TUSERDATA);
+  VERISIM_ASSERT(destroyer >= 1 && destroyer <= destroyers_.size());
+  header_of(L, index)->destroyer = destroyer;
+}
+
+void Sandbox::destroy_content(void* block) {
+  const std::uint32_t destroyer = (static_cast<BlockHeader*>(block) - 1)->destroyer;
+  if (destroyer != 0) destroyers_[destroyer - 1](static_cast<std::byte*>(block) + userdata_offset_);
 }
 
 Nesting::Nesting(lua_State* L) : sandbox_(Sandbox::of(L)) {

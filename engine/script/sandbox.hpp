@@ -16,6 +16,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/base/error.hpp"
 #include "engine/script/work.hpp"
@@ -81,6 +82,13 @@ class Sandbox {
   /// A small number for the object, given at the first request: what tostring() shows for its address.
   [[nodiscard]] std::uint32_t shown_number(lua_State* L, int index);
 
+  /// A number for a function that takes a full userdata's content apart. @pre it calls nothing of Lua
+  [[nodiscard]] std::uint32_t destroyer(void (*destroy)(void* content));
+  /// Lua frees the full userdata at `index` only after that function. Not by __gc, which Lua calls like any function
+  /// and which the end of the allowance or of the memory would keep from being called: what the content holds would be
+  /// lost.
+  void destroy_later(lua_State* L, int index, std::uint32_t destroyer);
+
   // Functions that the standard library needs.
   virtual void print(const std::string& line) = 0;
   [[nodiscard]] virtual double clock() const = 0;  ///< simulated time, s
@@ -97,6 +105,7 @@ class Sandbox {
   [[nodiscard]] std::string spent_text() const;
   [[nodiscard]] std::string memory_text() const;
   BlockHeader* header_of(lua_State* L, int index) const;
+  void destroy_content(void* block);
   LuaFailure take_failure(lua_State* L, int status);
 
   std::string name_;
@@ -106,7 +115,8 @@ class Sandbox {
   std::uint64_t blocks_made_ = 0;
   std::uint32_t numbers_shown_ = 0;
   void* newest_block_ = nullptr;
-  std::size_t userdata_offset_ = 0;   ///< from a userdata's block to its content; measured, not assumed
+  std::size_t userdata_offset_ = 0;  ///< from a userdata's block to its content; measured, not assumed
+  std::vector<void (*)(void*)> destroyers_;
   std::string memory_where_;          ///< FILE:LINE at which memory ran out
   std::uint64_t allowance_ = 0;       ///< units
   std::uint64_t allowance_left_ = 0;  ///< while no script runs

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
+#include "engine/script/script_state.hpp"
 
 namespace verisim::script {
 
@@ -63,6 +64,16 @@ std::string name_at(lua_State* L, int index, const std::string& what) {
   const std::string fault = name_fault(text);
   if (!fault.empty()) raise(L, "{} {}: '{}'", what, fault, shown(text, 40));
   return std::string(text);
+}
+
+std::string recordable(lua_State* L, const std::string& what, const std::string& name) {
+  std::string result = name;
+  for (char& c : result)
+    if (static_cast<unsigned char>(c) < 0x20 || c == '/' || c == '~') c = '_';
+  if (result.empty() || result == ".") raise(L, "{} is '{}'; give a name of letters", what, name);
+  if (result != name)
+    ScriptState::of(L).notice(fmt::format("{}: {} '{}' is recorded as '{}'", where(L), what, name, result));
+  return result;
 }
 
 std::string any_text_at(lua_State* L, int index, const std::string& what) {
@@ -172,9 +183,9 @@ std::optional<std::string> Fields::text(const char* name) {
 
 std::optional<std::string> Fields::name() {
   if (!push("name")) return std::nullopt;
-  std::string value = name_at(L_, -1, name_of("name"));
+  const std::string value = name_at(L_, -1, name_of("name"));
   lua_pop(L_, 1);
-  return value;
+  return recordable(L_, name_of("name"), value);
 }
 
 std::optional<bool> Fields::boolean(const char* name) {

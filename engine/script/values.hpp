@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -63,9 +64,8 @@ T* aligned(void* block) {  // Lua aligns userdata to 8 bytes, Eigen's quaternion
   return static_cast<T*>(std::align(alignof(T), sizeof(T), block, space));
 }
 template <typename T>
-int destroy(lua_State* L) {
-  aligned<T>(lua_touserdata(L, 1))->~T();
-  return 0;
+void destroy(void* block) {
+  aligned<T>(block)->~T();
 }
 }  // namespace detail
 
@@ -73,20 +73,25 @@ int destroy(lua_State* L) {
 template <typename T>
 void push_metatable(lua_State* L) {
   static_assert(kTypeName<T> != nullptr, "a type that scripts hold has a name");
-  if (luaL_newmetatable(L, kTypeName<T>) == 0) return;
+  lua_getfield(L, LUA_REGISTRYINDEX, kTypeName<T>);
+  if (!lua_isnil(L, -1)) return;
+  lua_pop(L, 1);
+  lua_newtable(L);
   lua_pushstring(L, kTypeName<T>);
   lua_setfield(L, -2, "__metatable");
-  if constexpr (!std::is_trivially_destructible_v<T>) {
-    lua_pushcfunction(L, detail::destroy<T>);
-    lua_setfield(L, -2, "__gc");
-  }
+  lua_pushvalue(L, -1);
+  lua_setfield(L, LUA_REGISTRYINDEX, kTypeName<T>);  // last: each of these may raise
 }
 
 template <typename T>
 void push(lua_State* L, T value) {
+  push_metatable<T>(L);
+  Sandbox& sandbox = Sandbox::of(L);
+  const std::uint32_t destroyer = std::is_trivially_destructible_v<T> ? 0 : sandbox.destroyer(detail::destroy<T>);
   void* block = lua_newuserdata(L, sizeof(T) + alignof(T));
   new (detail::aligned<T>(block)) T(std::move(value));
-  push_metatable<T>(L);
+  if (destroyer != 0) sandbox.destroy_later(L, -1, destroyer);
+  lua_insert(L, -2);
   lua_setmetatable(L, -2);
 }
 
@@ -122,6 +127,9 @@ T& get(lua_State* L, int index, const std::string& what) {
 [[nodiscard]] std::string text_at(lua_State* L, int index, const std::string& what);
 /// The same, of at most kLongestName bytes: what names something.
 [[nodiscard]] std::string name_at(lua_State* L, int index, const std::string& what);
+/// What the run file calls what is called `name`: its names are groups of groups, and a pair of format 1 was 'A~B'.
+/// Characters that would break those are replaced, with a notice; `what` begins the message if nothing is left.
+[[nodiscard]] std::string recordable(lua_State* L, const std::string& what, const std::string& name);
 /// Any bytes, of at most kLongestText: code, or what is said and then made harmless (shown).
 [[nodiscard]] std::string any_text_at(lua_State* L, int index, const std::string& what);
 [[nodiscard]] bool boolean_at(lua_State* L, int index, const std::string& what);

@@ -88,18 +88,6 @@ int define_simulation_parameters(lua_State* L) {
   return 0;
 }
 
-// A name becomes a folder of the run file and a side of 'A~B'. Characters that would break those are replaced, with a
-// notice.
-std::string recordable(lua_State* L, const std::string& name) {
-  std::string result = name;
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < 0x20 || c == '/' || c == '~') c = '_';
-  if (result.empty() || result == ".") raise(L, "addObject: name is '{}'; give the object a name", name);
-  if (result != name)
-    ScriptState::of(L).notice(fmt::format("{}: the object's name '{}' is recorded as '{}'", where(L), name, result));
-  return result;
-}
-
 bool name_taken(const Scene& scene, const std::string& name) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(),
                      [&](const BodyDescription& b) { return b.name == name; });
@@ -159,7 +147,6 @@ int add_object(lua_State* L) {
   Fields fields(L, 1, "addObject");
   BodyDescription body;
   auto name = fields.name();
-  if (name) name = recordable(L, *name);
   if (name && name_taken(state.scene, *name))
     raise(L, "addObject: there is a body '{}' already; give each its own name", *name);
   body.X_WB.position = fields.vector("position").value_or(Vector3d::Zero());
@@ -177,7 +164,7 @@ int add_object(lua_State* L) {
 
   std::string stem;
   read_geometry(L, fields, body, stem);
-  body.name = name ? *name : free_name(state.scene, recordable(L, stem.empty() ? "body" : stem));
+  body.name = name ? *name : free_name(state.scene, recordable(L, "addObject: name", stem.empty() ? "body" : stem));
   if (!(voxel_size > 0))
     raise(L, "voxelsize is {:g} m but must be above 0; '{}' measures {:g} m, mm({:g}) is usual", voxel_size, body.name,
           extent_of(body), kUsualVoxelSize * 1000);

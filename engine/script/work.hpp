@@ -31,7 +31,7 @@ inline void raise_if_spent(lua_State* L) {
 struct BlockHeader {
   std::uint64_t order;  ///< of making, among all blocks
   std::uint32_t shown;
-  std::uint32_t unused;
+  std::uint32_t destroyer;  ///< 0: none; else which one of the sandbox takes its content apart
 };
 
 /// @pre a Sandbox allocated the block

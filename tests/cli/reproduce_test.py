@@ -140,6 +140,7 @@ class Reproduce(ProgramTest):
 
     def test_refuses_what_it_does_not_know_or_cannot_write(self):
         self.refuse(2, "R77", "reproduce", "--only", "R77")
+        self.refuse(3, "peg_in_hole.lua", "reproduce", "--quick", "--only", "R1", "--scenarios", self.path("empty"))
         self.refuse(5, "no/", "reproduce", "--quick", "--only", "R7", "-o", self.write("no", "") + "/")
 
 

@@ -227,6 +227,17 @@ TEST(BadFile, WithAPlaceThatIsNotFiniteIsRefused) {
   static_cast<void>(refusal("a.ply", ply(mesh)));
 }
 
+TEST(BadFile, OfASizeThatNoPartHasIsRefused) {
+  EXPECT_EQ(load_one("a.obj", obj(kBox)).name, "a");
+  for (const double scale : {1e-12, 1e12, 1e100, 1e200, 1e308}) {
+    const LoadOptions options{.scale = scale};
+    EXPECT_THROW((void)load_model("a.obj", obj(kBox), options), Error) << scale;
+  }
+  TriangleMesh far = kBox;
+  for (Vector3d& p : far.vertices) p.x() += 1e10;
+  static_cast<void>(refusal("a.obj", obj(far)));
+}
+
 TEST(BadFile, WithAnIndexBeyondItsVerticesIsRefused) {
   static_cast<void>(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"));
 }

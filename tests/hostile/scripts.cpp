@@ -17,6 +17,7 @@
 #include "engine/base/random.hpp"
 #include "engine/base/text.hpp"
 #include "engine/script/script_state.hpp"
+#include "tests/length.hpp"
 #include "tests/script/every_function.hpp"
 
 namespace verisim::script {
@@ -25,13 +26,8 @@ namespace {
 constexpr std::uint64_t kUnits = 300'000;                      // some 3 ms
 constexpr std::size_t kMemory = std::size_t{24} << 20;         // bytes
 constexpr std::size_t kOutside = std::size_t{64} * 1'000'000;  // bytes
-#if defined(__SANITIZE_ADDRESS__)
-constexpr double kSecondsMax = 60;           // of a program some ten times slower
-constexpr bool kMemoryIsTheScripts = false;  // AddressSanitizer keeps what was freed
-#else
-constexpr double kSecondsMax = 2;
-constexpr bool kMemoryIsTheScripts = true;
-#endif
+constexpr double kSecondsMax = test::kSanitized ? 60 : 2;
+constexpr bool kMemoryIsTheScripts = !test::kSanitized;  // AddressSanitizer keeps what was freed
 constexpr std::size_t kFrames = 2;
 constexpr std::size_t kActionsMax = 2;  // each has an allowance of its own in each frame, some 0.1 s
 
@@ -282,8 +278,8 @@ int main(int argc, char** argv) {
     return argc > i ? std::strtoull(argv[i], nullptr, 10) : otherwise;
   };
   const std::uint64_t short_count = argument(1, 3000);
-  const bool is_long = std::getenv("VERISIM_LONG_TESTS") != nullptr;
   if (std::getenv("HOSTILE_LOUD") == nullptr && std::freopen("/dev/null", "w", stderr) == nullptr)
     return 1;  // what programs print
-  return verisim::script::run_all(is_long ? argument(2, short_count) : short_count, argument(3, 1));
+  return verisim::script::run_all(
+      verisim::test::by_length<std::uint64_t>(short_count / 4, short_count, argument(2, short_count)), argument(3, 1));
 }

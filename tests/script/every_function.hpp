@@ -63,10 +63,7 @@ class FunctionWalk {
     const int table = lua_gettop(L_);
     for (lua_pushnil(L_); lua_next(L_, table) != 0;) {
       const std::string name = lua_type(L_, -2) == LUA_TSTRING ? lua_tostring(L_, -2) : "[]";
-      if (name == "__gc")
-        lua_pop(L_, 1);  // Lua's collector alone calls it
-      else
-        visit(joined(path, name));
+      visit(joined(path, name));
     }
   }
   void visit_types() {

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include "tests/length.hpp"
 #include "tests/script/bare_sandbox.hpp"
 
 namespace verisim::script::lua_tables_test {
@@ -59,9 +60,7 @@ class PackagedLua {
 };
 
 TEST(LuaTables, KeysAreVisitedInTheOrderOfLuasOwnTables) {
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "AddressSanitizer refuses RTLD_DEEPBIND";
-#endif
+  if (test::kSanitized) GTEST_SKIP() << "AddressSanitizer refuses RTLD_DEEPBIND";
   PackagedLua packaged;
   ASSERT_TRUE(packaged.there()) << "liblua5.1-0 is a dependency of liblua5.1-0-dev";
   for (std::uint64_t seed = 0; seed < 500; ++seed) {

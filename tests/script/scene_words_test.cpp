@@ -234,6 +234,32 @@ TEST(Model, OfAFormatThatCannotBeReadComesFromItsSibling) {
             "pin.lua:1: models\\cube.osg is in a format that cannot be read; models/cube.obj is read in its place");
 }
 
+// '/' would make groups within groups of the run file, where nobody looks for them.
+TEST(Names, ThatWouldBreakTheRunFileAreReplacedAndSaidSo) {
+  for (const std::string word :
+       {"addObject{ name = 'a/b', Solid.box{1, 1, 1}, voxelsize = 0.1 }",
+        "addDevice(Devices.Hand{ name = 'a/b', path = {{0, 0, 0}} })",
+        "addDevice(Devices.Sensable.PhantomOmni{ name = 'a/b' })", "WiiHead{ name = 'a/b' }"}) {
+    WrittenScenario written(word);
+    written.run(1);
+    const auto notices = written.scenario->notices();
+    EXPECT_EQ(std::count_if(notices.begin(), notices.end(),
+                            [](const std::string& n) { return n.find("name 'a/b' is recorded as 'a_b'") != n.npos; }),
+              1)
+        << word;
+    bool recorded = false;
+    Schema schema;
+    written.simulation->describe(schema);
+    for (const Column& column : schema.columns()) {
+      EXPECT_EQ(column.path.find("a/b"), std::string::npos) << column.path;
+      recorded = recorded || column.path.find("/a_b/") != std::string::npos;
+    }
+    EXPECT_TRUE(recorded) << word;
+  }
+  for (const std::string name : {"''", "'.'"})
+    EXPECT_NE(WrittenScenario("addDevice(Devices.Hand{ name = " + name + ", path = {{0, 0, 0}} })").refusal(), "");
+}
+
 TEST(ModelParts, ListsWhatAFileHolds) {
   WrittenScenario written(R"(
     local parts = modelParts("cube.obj", {scale = 0.5})

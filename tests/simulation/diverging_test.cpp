@@ -9,6 +9,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/finite.hpp"
+#include "tests/length.hpp"
 #include "tests/simulation/scenes.hpp"
 #include "tests/support/random_inputs.hpp"
 
@@ -111,7 +112,7 @@ double any_size(test::Inputs& inputs, double limit) {
 // Numbers of any size in all places: either all rows are finite, or the run ends in the frame in which one is not.
 TEST(Diverging, NoRowHoldsANumberThatIsNone) {
   std::map<std::string, int> ends;
-  for (const std::uint64_t seed : test::seeds(std::getenv("VERISIM_LONG_TESTS") != nullptr ? 2000 : 60)) {
+  for (const std::uint64_t seed : test::seeds(test::by_length(20, 60, 2000))) {
     SCOPED_TRACE(seed);
     test::Inputs inputs(seed);
     const Integrator integrator = seed % 2 == 0 ? Integrator::semi_implicit : Integrator::implicit;

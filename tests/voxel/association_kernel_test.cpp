@@ -12,6 +12,7 @@
 #include "engine/voxel/overlap.hpp"
 #include "engine/voxel/voxelize.hpp"
 #include "tests/geometry/models.hpp"
+#include "tests/length.hpp"
 #include "tests/support/random_inputs.hpp"
 #include "tests/voxel/kernel_shapes.hpp"
 
@@ -104,10 +105,6 @@ const std::vector<Case> kFiles = {
     {"AxisOfBearing", [] { return from_file("occt/Axis_of_bearing.stp", 0); }, 0.0015},
 };
 
-bool is_long() {
-  return std::getenv("VERISIM_LONG_TESTS") != nullptr;
-}
-
 bool is_by_triangles(const Part& part, EntityNumber entity) {
   if (entity < part.faces.size()) return std::holds_alternative<OtherSurface>(part.faces[entity].surface);
   return std::holds_alternative<OtherCurve>(part.edges[entity - part.faces.size()].curve);
@@ -166,7 +163,7 @@ class Association : public ::testing::TestWithParam<Case> {
           Vector3f(body.shell.x[i], body.shell.y[i], body.shell.z[i]).cast<double>() + body.shell.reference;
       (body.features.sets[body.shell.features[i]].size() == 1 ? plain : mixed).push_back(body.voxmap.cell_of(p));
     }
-    const std::size_t wanted = is_long() ? 2000 : 25;
+    const std::size_t wanted = test::by_length<std::size_t>(8, 25, 2000);
     Compared compared;
     test::Inputs inputs(7);
     for (const std::vector<Eigen::Vector3i>* cells : {&plain, &mixed}) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/length.hpp"
 #include "tests/voxel/plain.hpp"
 #include "tests/voxel/shapes.hpp"
 
@@ -43,7 +44,9 @@ std::vector<Case> cases() {
 
 // Independent of everything fast: separating axes per voxel and triangle, distance by search, sides by solid angles.
 TEST(Voxelize, EqualsThePlainVoxelizer) {
-  for (const Case& c : cases()) {
+  const std::vector<Case> all = cases();
+  for (std::size_t i = 0; i < all.size(); i += test::by_length<std::size_t>(3, 1, 1)) {
+    const Case& c = all[i];
     SCOPED_TRACE(c.name);
     const Voxmap map = voxelize(c.name, c.mesh, {.voxel_size = c.voxel_size}).voxmap;
     EXPECT_TRUE(plain::layers(map) == plain::layers(c.mesh, map));

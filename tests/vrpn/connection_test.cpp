@@ -7,6 +7,7 @@
 
 #include "engine/base/random.hpp"
 #include "engine/vrpn/payload.hpp"
+#include "tests/length.hpp"
 
 namespace verisim::vrpn::connection_test {
 namespace {
@@ -152,7 +153,7 @@ TEST(Fuzz, NoStreamBreaksAConnection) {
   put_message(good, {{}, 0, kSenderDescription, 0, encode_name("WiiMote0")});
   put_message(good, {{}, 0, kTypeDescription, 0, encode_name(kPing)});
   put_message(good, {{}, 0, 0, 0, {}});
-  const std::uint64_t count = std::getenv("VERISIM_LONG_TESTS") != nullptr ? 1'000'000 : 100'000;
+  const std::uint64_t count = test::by_length<std::uint64_t>(20'000, 100'000, 1'000'000);
   std::uint64_t heard = 0;
   std::uint64_t faults = 0;
   for (std::uint64_t k = 0; k < count; ++k) {

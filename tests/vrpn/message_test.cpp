@@ -7,6 +7,7 @@
 
 #include "engine/base/random.hpp"
 #include "engine/vrpn/payload.hpp"
+#include "tests/length.hpp"
 
 namespace verisim::vrpn::message_test {
 namespace {
@@ -135,7 +136,7 @@ Bytes any_bytes(const RandomStream& random, std::uint64_t k) {
 // 10^6 inputs; 10^7 with VERISIM_LONG_TESTS=1. What is accepted must be worth accepting; nothing may read outside.
 TEST(Fuzz, NoBytesBreakTheDecoders) {
   const RandomStream random(11, "wire fuzz");
-  const std::uint64_t count = std::getenv("VERISIM_LONG_TESTS") != nullptr ? 10'000'000 : 1'000'000;
+  const std::uint64_t count = test::by_length<std::uint64_t>(200'000, 1'000'000, 10'000'000);
   std::uint64_t whole = 0;
   std::uint64_t understood = 0;
   for (std::uint64_t k = 0; k < count; ++k) {

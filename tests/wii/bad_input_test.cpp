@@ -7,6 +7,7 @@
 
 #include "engine/base/random.hpp"
 #include "engine/wii/tracker.hpp"
+#include "tests/length.hpp"
 
 namespace verisim::wii::bad_input_test {
 namespace {
@@ -165,7 +166,7 @@ Channels any_channels(const RandomStream& random, std::uint64_t k, const Channel
 }
 
 std::uint64_t fuzz_count() {
-  return std::getenv("VERISIM_LONG_TESTS") != nullptr ? 10'000'000 : 200'000;
+  return test::by_length<std::uint64_t>(50'000, 200'000, 10'000'000);
 }
 
 // Issue, "Numbers": 10^7 frames with VERISIM_LONG_TESTS=1, a fiftieth without.
