@@ -3,7 +3,11 @@
 // the long form.
 #pragma once
 
+#include <cstddef>
 #include <cstdlib>
+#include <initializer_list>
+#include <span>
+#include <vector>
 
 namespace verisim::test {
 
@@ -21,6 +25,22 @@ inline bool is_long() {
 template <typename T>
 T by_length(T sanitized, T usual, T in_full) {
   return is_long() ? in_full : kSanitized ? sanitized : usual;
+}
+
+/// All of them; under the sanitizers every third, the first among them.
+template <typename T>
+std::vector<T> some_of(std::span<const T> all) {
+  std::vector<T> chosen;
+  for (std::size_t i = 0; i < all.size(); i += kSanitized ? 3 : 1) chosen.push_back(all[i]);
+  return chosen;
+}
+template <typename T>
+std::vector<T> some_of(std::initializer_list<T> all) {
+  return some_of(std::span<const T>(all.begin(), all.size()));
+}
+template <typename T, std::size_t N>
+std::vector<T> some_of(const T (&all)[N]) {
+  return some_of(std::span<const T>(all));
 }
 
 }  // namespace verisim::test

@@ -5,6 +5,7 @@
 #include "tests/exact/driven_insertion.hpp"
 #include "tests/exact/scenes.hpp"
 #include "tests/exact/seated_cone.hpp"
+#include "tests/length.hpp"
 
 namespace verisim::exact::test::exact_thresholds_test {
 namespace {
@@ -72,7 +73,8 @@ class ExactThresholds : public ::testing::TestWithParam<std::tuple<Threshold, do
   [[nodiscard]] static Numbers numbers() { return scaled(std::get<0>(GetParam()), std::get<1>(GetParam())); }
 };
 INSTANTIATE_TEST_SUITE_P(HalfAndDouble, ExactThresholds,
-                         ::testing::Combine(::testing::ValuesIn(kThresholds), ::testing::Values(0.5, 2.0)),
+                         ::testing::Combine(::testing::ValuesIn(verisim::test::some_of(kThresholds)),
+                                            ::testing::Values(0.5, 2.0)),
                          [](const auto& number) {
                            const std::string name = std::get<0>(number.param).name;
                            return name + (std::get<1>(number.param) < 1 ? "Halved" : "Doubled");

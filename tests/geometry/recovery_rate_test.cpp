@@ -10,6 +10,7 @@
 #include "tests/geometry/models.hpp"
 #include "tests/geometry/parametrization.hpp"
 #include "tests/geometry/recovered.hpp"
+#include "tests/length.hpp"
 
 namespace verisim::recover_share_test::recovery_rate_test {
 namespace {
@@ -132,7 +133,7 @@ class RecoveryRate : public ::testing::Test {
 // The piston's two fillets are free forms: they count as found where they are `other`. The screw's head is a tube that
 // passes its axis, with edges that are off by 0.3 um as drawn: one of its three pieces stays `other`.
 TEST_F(RecoveryRate, OfDrawnPartsIsCompleteButForWhatIsListed) {
-  for (const Reached& reached : {
+  for (const Reached& reached : test::some_of({
            Reached{"freecad_cc0/axis.stp"},
            Reached{"freecad_cc0/bearing_20x37x9.stp", 0, 0.9999, 2},
            Reached{"freecad_cc0/crank_arm.stp"},
@@ -148,7 +149,7 @@ TEST_F(RecoveryRate, OfDrawnPartsIsCompleteButForWhatIsListed) {
            Reached{"occt/mal_vis.stp"},
            Reached{"occt/Axis_of_bearing.stp"},
            Reached{"occt/screw.step", 1, 0.92},
-       })
+       }))
     expect_reached(reached, {.deflection = 1e-4, .angular_deflection = 0.2});
 }
 
