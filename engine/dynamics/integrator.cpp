@@ -6,6 +6,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/dynamics/free_rotation.hpp"
 
 namespace verisim {
 namespace {
@@ -48,7 +49,7 @@ Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   const Vector3d L1 = body.inertia_W() * omega_star;
   body.v_C = during.head<3>();
   body.p_WC += dt * body.v_C;
-  body.R_WB = (rotation_from_vector(dt * omega_star) * body.R_WB).normalized();
+  body.R_WB = turned_freely(body, L1, dt);
   body.omega = body.inertia_inverse_W() * L1;
   return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
 }

@@ -25,8 +25,9 @@
 // motion. If moving bodies touch each other, the sum of their works counts and one scale applies to all, so that action
 // equals reaction and momentum is conserved.
 //
-// Rotation conserves angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then
-// omega = I1^-1 L1. Spin energy stays below |L|^2 / (2 I_min) at any speed: a fast needle cannot blow up.
+// Rotation conserves angular momentum: L1 = L0 + dt torque; the orientation advances as that of a free body with L1
+// (free_rotation.hpp: second order, no drift of energy, symmetric bodies exactly); then omega = I1^-1 L1. Spin energy
+// stays below |L|^2 / (2 I_min) at any speed: a fast needle cannot blow up.
 //
 // Every function below that takes a body, its loads and dt requires (each half of a step: for its part):
 // @pre dt is finite and above 0; the body has mass, and its state is finite with a unit rotation; the matrices of the
