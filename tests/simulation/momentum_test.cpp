@@ -195,5 +195,38 @@ TEST_P(FreeBodies, KeepTheirMomentumInARow) {
   }
 }
 
+// A coupling that an implicit step makes as stiff as it likes takes nothing of what explicit forces may be: a light box
+// that a hand of 300 N/m holds pushes another, and both go no faster than the hand and what voxels of 3 mm give back.
+TEST(HeldBody, PushesAFreeOneHoweverStifflyItIsHeld) {
+  for (const double density : {1e-3, 1.0, 1000.0}) {
+    for (const Hybrid hybrid : {hybrid::off, hybrid::restore, hybrid::blend}) {
+      SCOPED_TRACE(::testing::Message() << density << ' ' << hybrid->name());
+      Scene scene = scene_of({"", hybrid, Integrator::implicit});
+      scene.parameters.duration = 1;
+      scene.bodies = {body_like(0), body_like(0)};
+      for (BodyDescription& body : scene.bodies) body.density = density;
+      scene.bodies[1].name = "other";
+      scene.bodies[1].X_WB.position = {0.06, 0.001, 0.002};
+      scene.devices = {scenes::hand_along({{0, 0, 0}, {0.1, 0, 0}}, 0.1)};
+      scene.grasps = {{0, 0}};
+      Simulation simulation(std::move(scene), {});
+      double most = 0;
+      while (simulation.frame() < simulation.frames_planned()) {
+        const Vector3d arm = simulation.body_pose(0).position - simulation.body_pose(1).position;
+        simulation.step();
+        for (std::size_t i = 0; i < 2; ++i) most = std::max(most, simulation.body_twist(i).linear.norm());
+        const Wrench on_held = simulation.body_force(0);
+        const Wrench on_free = simulation.body_force(1);
+        const double size = on_held.force.norm();
+        ASSERT_LE((on_held.force + on_free.force).norm(), tolerance(kRounding * size));
+        ASSERT_LE((on_held.torque + on_free.torque + arm.cross(on_held.force)).norm(),
+                  tolerance(kRounding * (on_held.torque.norm() + arm.norm() * size)));
+      }
+      EXPECT_GT(simulation.body_pose(1).position.x(), 0.08) << "it was never pushed";
+      EXPECT_LT(most, 0.5);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace verisim::momentum_test
