@@ -106,6 +106,7 @@ void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& seco
     double budget = 4;
     if (!points.inverse_mass.isZero(0)) budget = std::min(budget, points.budget);
     if (!map.inverse_mass.isZero(0)) budget = std::min(budget, map.budget);
+    VERISIM_ASSERT(budget > 0);
     // With y = dt sqrt(k lambda) and b = 2 zeta sqrt(k / lambda), k dt^2 lambda + 2 b dt lambda is y^2 + 4 zeta y.
     const double y = std::sqrt(4 * zeta * zeta + kSafety * budget) - 2 * zeta;
     stiffness_ = std::min(stiffness_, y * y / (dt * dt * lambda));

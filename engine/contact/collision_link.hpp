@@ -22,7 +22,8 @@ struct LinkBody {
   Vector3d p_WC;          ///< centre of mass
   Twist twist;            ///< of the centre of mass
   Matrix6d inverse_mass;  ///< world coordinates; zero for a body that does not move
-  double budget = 0;      ///< part of the stability budget of 4 for this link; unused if the body does not move
+  double budget = 0;  ///< part of the stability budget of 4 for this link; unused if the body does not move, or if no
+                      ///< rule is applied
 };
 
 struct PenaltyParameters {
@@ -58,7 +59,8 @@ class CollisionLink {
   [[nodiscard]] const ContactList& contacts() const { return contacts_; }
 
   // Of both parts: @pre dt is finite and above 0; stiffness_max and damping_ratio are finite and not negative; inverse
-  // masses are symmetric. Where there is no contact, nothing is asked.
+  // masses are symmetric; with the stability rule, the budget of a body that moves is above 0. Where there is no
+  // contact, nothing is asked.
 
   /// Response, part one: sets the stiffness by the stability rule and the penalty force of every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);

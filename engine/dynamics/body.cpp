@@ -54,6 +54,8 @@ RigidBody make_body(const std::string& name, double volume, const Vector3d& cent
     fail(ErrorKind::input, "'{}': its inertia is not positive; a body needs a closed, outward oriented shape", name);
   const Vector3d values = principal.eigenvalues().cwiseMax(kInertiaRatioMin * largest);
   const Matrix3d& axes = principal.eigenvectors();
+  body.principal_moments = values;
+  body.principal_axes_B << axes.col(0), axes.col(2).cross(axes.col(0)), axes.col(2);
   body.inertia_B = axes * values.asDiagonal() * axes.transpose();
   body.inertia_inverse_B = axes * values.cwiseInverse().asDiagonal() * axes.transpose();
   if (!body.inertia_B.allFinite() || !body.inertia_inverse_B.allFinite())

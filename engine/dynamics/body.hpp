@@ -13,7 +13,9 @@ struct RigidBody {
   double mass = 0;                        ///< kg, > 0
   Matrix3d inertia_B = Matrix3d::Zero();  ///< kg m^2, about C, axes of B
   Matrix3d inertia_inverse_B = Matrix3d::Zero();
-  Vector3d p_BC = Vector3d::Zero();  ///< m, centre of mass in body coordinates
+  Vector3d principal_moments = Vector3d::Zero();     ///< kg m^2, ascending
+  Matrix3d principal_axes_B = Matrix3d::Identity();  ///< their axes as columns, right-handed
+  Vector3d p_BC = Vector3d::Zero();                  ///< m, centre of mass in body coordinates
 
   // state, world coordinates
   Vector3d p_WC = Vector3d::Zero();  ///< m

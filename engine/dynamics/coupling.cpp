@@ -41,6 +41,7 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   c.torque_max = limits.torque_max;
   c.damping = 2 * std::sqrt(c.stiffness * body.mass);
   c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
+  if (!stabilize) return c;
   c.budget_used = std::max(budget_used_by(dt * std::sqrt(c.stiffness / body.mass)),
                            budget_used_by(dt * std::sqrt(c.angular_stiffness / inertia_min)));
   return c;

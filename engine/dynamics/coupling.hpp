@@ -36,7 +36,9 @@ struct Coupling {
   Matrix3d angular_damping_B = Matrix3d::Zero();                ///< B in body axes [N m s/rad]
   double force_max = std::numeric_limits<double>::infinity();   ///< N
   double torque_max = std::numeric_limits<double>::infinity();  ///< N m
-  double budget_used = 0;  ///< of the stability budget of 4; at most kCouplingBudget if stabilized
+  /// Of the stability budget of 4, which explicit forces share: at most kCouplingBudget. 0 if not stabilized: in an
+  /// implicit step the coupling takes nothing of it.
+  double budget_used = 0;
 };
 
 /// @param stabilize  apply the stability rule, needed for explicit forces; a linearly implicit integrator needs none

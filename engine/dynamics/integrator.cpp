@@ -6,6 +6,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/dynamics/free_rotation.hpp"
 
 namespace verisim {
 namespace {
@@ -48,7 +49,7 @@ Motion advance(RigidBody& body, const Vector6d& during, double dt) {
   const Vector3d L1 = body.inertia_W() * omega_star;
   body.v_C = during.head<3>();
   body.p_WC += dt * body.v_C;
-  body.R_WB = (rotation_from_vector(dt * omega_star) * body.R_WB).normalized();
+  body.R_WB = turned_freely(body, L1, dt);
   body.omega = body.inertia_inverse_W() * L1;
   return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
 }
@@ -115,6 +116,17 @@ double passive_scale(double available, const ContactWork& work) {
 
 namespace {
 
+Wrench scaled(double scale, const Wrench& w) {
+  return {scale * w.force, scale * w.torque};
+}
+
+/// All contacts at the start of the step.
+Wrench contact_at_start(const Loads& loads) {
+  Wrench all = loads.contact;
+  all += loads.contact_mutual;
+  return all;
+}
+
 /// Change of velocity by a wrench within the step.
 Vector6d velocity_change(const RigidBody& body, const Matrix3d& inertia_inverse, const Wrench& w, double dt) {
   return stacked(dt / body.mass * w.force, dt * (inertia_inverse * w.torque));
@@ -135,8 +147,9 @@ ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads
   const Matrix3d inertia_inverse = body.inertia_inverse_W();
   const Vector6d before_and_free =
       2 * stacked(body.v_C, body.omega) + velocity_change(body, inertia_inverse, others, dt);
-  const Vector6d f = stacked(loads.contact);
-  const double quadratic = 0.5 * dt * f.dot(velocity_change(body, inertia_inverse, loads.contact, dt));
+  const Wrench contact = contact_at_start(loads);
+  const Vector6d f = stacked(contact);
+  const double quadratic = 0.5 * dt * f.dot(velocity_change(body, inertia_inverse, contact, dt));
   const double linear = 0.5 * dt * f.dot(before_and_free);
   return {quadratic + linear, quadratic, linear};
 }
@@ -147,14 +160,14 @@ StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, doub
   const double energy_before = potential_at_start(body, loads, dt);
   const Wrench spring = loads.coupling == nullptr ? Wrench{} : loads.coupling_at_start.spring;
   const Wrench damper = damper_of(loads);
-  const Wrench contact{contact_scale * loads.contact.force, contact_scale * loads.contact.torque};
+  const Wrench contact = scaled(contact_scale, contact_at_start(loads));
   const Vector3d force = loads.external.force + contact.force + spring.force + damper.force;
   const Vector3d torque = loads.external.torque + contact.torque + spring.torque + damper.torque;
   const Vector6d u1 =
       stacked(body.v_C, body.omega) + velocity_change(body, body.inertia_inverse_W(), {force, torque}, dt);
   const Motion motion = advance(body, u1, dt);
   StepWork work = work_of_step(body, loads, motion, spring, damper, contact, energy_before, dt, dt);
-  work.contact_end.scale = contact_scale;
+  work.contact_end.scale = work.contact_end.mutual_scale = contact_scale;
   return work;
 }
 
@@ -192,8 +205,10 @@ Vector6d contact_at_end(const RigidBody& body, const Loads& loads, const Vector6
          loads.contact_damping * (u1 - u0);
 }
 
-/// A u1 = b of all loads, with or without the contact.
-void assemble(const RigidBody& body, const Loads& loads, double dt, bool with_contact, ImplicitStep& step) {
+enum class Contacts { none, mutual, all };
+
+/// A u1 = b of all loads but of those contacts that are left out.
+void assemble(const RigidBody& body, const Loads& loads, double dt, Contacts contacts, ImplicitStep& step) {
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Matrix6d M = Matrix6d::Zero();
   M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
@@ -201,8 +216,10 @@ void assemble(const RigidBody& body, const Loads& loads, double dt, bool with_co
   // f1 = f0 - dt K u1 - D (u1 - u0) for each load; collected for u1.
   step.A = M + dt * step.D + dt * dt * step.K;
   step.b = M * u0 + dt * (stacked(loads.external) + step.spring + step.damper + step.D * u0);
-  step.with_contact = with_contact;
-  if (with_contact) {
+  step.with_mutual = contacts != Contacts::none;
+  if (step.with_mutual) step.b += dt * stacked(loads.contact_mutual);
+  step.with_contact = contacts == Contacts::all;
+  if (step.with_contact) {
     step.A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
     step.b += dt * (stacked(loads.contact) + dt * loads.contact_drift + loads.contact_damping * u0);
   }
@@ -216,12 +233,13 @@ ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt
   ImplicitStep step;
   linearize(body, loads, dt, step);
   const bool touching = !loads.contact_stiffness.isZero(0) || !loads.contact_damping.isZero(0);
-  assemble(body, loads, dt, touching, step);
+  assemble(body, loads, dt, touching ? Contacts::all : Contacts::mutual, step);
   if (!touching) return step;
   // A contact that would pull by the end of the step has separated. M^-1 weighs forces against torques, so the answer
   // does not depend on the unit of length.
   const Vector6d contact1 = contact_at_end(body, loads, step.free, dt);
-  if (contact1.dot(body.inverse_mass_matrix() * stacked(loads.contact)) <= 0) assemble(body, loads, dt, false, step);
+  if (contact1.dot(body.inverse_mass_matrix() * stacked(loads.contact)) <= 0)
+    assemble(body, loads, dt, Contacts::mutual, step);
   return step;
 }
 
@@ -233,7 +251,8 @@ StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& s
   const Vector6d u0 = stacked(body.v_C, body.omega);
   Wrench contact = solved;
   if (step.with_contact) contact += wrench_of(contact_at_end(body, loads, u1, dt));
-  const ContactEnd end{step.with_contact ? 1.0 : 0.0, u0, u1};
+  if (step.with_mutual) contact += loads.contact_mutual;
+  const ContactEnd end{step.with_contact ? 1.0 : 0.0, u0, u1, step.with_mutual ? 1.0 : 0.0};
   const Wrench spring = wrench_of(step.spring - dt * (step.K * u1));
   const Wrench damper = wrench_of(step.damper + step.D * (u0 - u1));
   const Motion motion = advance(body, u1, dt);
@@ -251,9 +270,14 @@ struct DividedStep {
   ImplicitStep free;
 };
 
+bool has_contact(const Loads& loads, const ImplicitStep& step) {
+  return step.with_contact || !stacked(loads.contact_mutual).isZero(0);
+}
+
 DividedStep divide(const RigidBody& body, const Loads& loads, const ImplicitStep& step, double dt) {
-  DividedStep divided{step.free, contact_at_end(body, loads, step.free, dt), step};
-  assemble(body, loads, dt, false, divided.free);
+  DividedStep divided{step.free, stacked(loads.contact_mutual), step};
+  if (step.with_contact) divided.contact += contact_at_end(body, loads, step.free, dt);
+  assemble(body, loads, dt, Contacts::none, divided.free);
   return divided;
 }
 
@@ -261,7 +285,7 @@ DividedStep divide(const RigidBody& body, const Loads& loads, const ImplicitStep
 
 ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, double dt) {
   const ImplicitStep step = begin_implicit(body, loads, dt);
-  if (!step.with_contact) return {};
+  if (!has_contact(loads, step)) return {};
   const DividedStep divided = divide(body, loads, step, dt);
   const Vector6d u0 = stacked(body.v_C, body.omega);
   const auto work_along = [&](const Vector6d& velocities) { return 0.5 * dt * divided.contact.dot(velocities); };
@@ -272,9 +296,10 @@ ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, dou
 StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale) {
   VERISIM_ASSERT(is_fraction(contact_scale));
   const ImplicitStep step = begin_implicit(body, loads, dt);
-  if (!step.with_contact || contact_scale == 1) return end_implicit(body, loads, step, step.free, {}, dt);
+  if (!has_contact(loads, step) || contact_scale == 1) return end_implicit(body, loads, step, step.free, {}, dt);
   const DividedStep divided = divide(body, loads, step, dt);
-  const ContactEnd end{contact_scale, stacked(body.v_C, body.omega), divided.with_all};
+  const ContactEnd end{step.with_contact ? contact_scale : 0.0, stacked(body.v_C, body.omega), divided.with_all,
+                       contact_scale};
   const Vector6d u1 = divided.free.free + contact_scale * (divided.with_all - divided.free.free);
   StepWork work = end_implicit(body, loads, divided.free, u1, wrench_of(contact_scale * divided.contact), dt);
   work.contact_end = end;

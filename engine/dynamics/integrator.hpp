@@ -13,6 +13,11 @@
 // constant. Contacts are unilateral: the step is taken without the contact if there was none at the start, or if its
 // wrench at the end would point against the one at the start.
 //
+// Contacts between two bodies that both move are explicit in both integrators (contact_mutual): each body is advanced
+// alone, and the end of its step is not what the other took it for. Only what both take at the start is equal and
+// opposite, so that momentum is kept. Their part of the stability budget is all of it in an implicit step: with A in
+// place of M, loads that are taken at the end only add to what is stable.
+//
 // Energy. A velocity-first step does not conserve a spring's energy U but U + dt/2 f.u, exactly if the spring is linear
 // and u along it: f0.(u0 + u1)/2 dt = [U + dt/2 f.u] before - after, where u1 - u0 = dt M^-1 f0. shadow_energy is the
 // second term (of the modified, or shadow, Hamiltonian).
@@ -25,8 +30,9 @@
 // motion. If moving bodies touch each other, the sum of their works counts and one scale applies to all, so that action
 // equals reaction and momentum is conserved.
 //
-// Rotation conserves angular momentum: L1 = L0 + dt torque; the orientation advances with I0^-1 L1; then
-// omega = I1^-1 L1. Spin energy stays below |L|^2 / (2 I_min) at any speed: a fast needle cannot blow up.
+// Rotation conserves angular momentum: L1 = L0 + dt torque; the orientation advances as that of a free body with L1
+// (free_rotation.hpp: second order, no drift of energy, symmetric bodies exactly); then omega = I1^-1 L1. Spin energy
+// stays below |L|^2 / (2 I_min) at any speed: a fast needle cannot blow up.
 //
 // Every function below that takes a body, its loads and dt requires (each half of a step: for its part):
 // @pre dt is finite and above 0; the body has mass, and its state is finite with a unit rotation; the matrices of the
@@ -43,20 +49,23 @@ namespace verisim {
 /// The loads on a body during one step; world coordinates, about its centre of mass.
 struct Loads {
   Wrench external;                                ///< gravity and the like: constant over the step
-  Wrench contact;                                 ///< at the start of the step
+  Wrench contact;                                 ///< with what does not move, at the start of the step
   Matrix6d contact_stiffness = Matrix6d::Zero();  ///< K of all contacts (k W); implicit integrator only
   Matrix6d contact_damping = Matrix6d::Zero();    ///< D of all contacts (b W)
   Vector6d contact_drift = Vector6d::Zero();      ///< sum of K times the other body's twist at C
+  Wrench contact_mutual;                          ///< with bodies that move: constant over the step
   const Coupling* coupling = nullptr;             ///< null: not held
   CouplingForce coupling_at_start;
   CouplingTarget target;
 };
 
-/// How the contact of a step's loads acted. Each part of it, with wrench w0 at the start, stiffness K, damping D and
-/// drift, acted as scale (w0 + dt (drift - K u1) - D (u1 - u0)).
+/// How the contact of a step's loads acted. Each part of Loads::contact, with wrench w0 at the start, stiffness K,
+/// damping D and drift, acted as scale (w0 + dt (drift - K u1) - D (u1 - u0)); each part of contact_mutual as
+/// mutual_scale w0.
 struct ContactEnd {
   double scale = 1;  ///< 0: the contact separated
   Vector6d u0 = Vector6d::Zero(), u1 = Vector6d::Zero();
+  double mutual_scale = 1;
 };
 /// @pre dt is finite and above 0; end.scale is in [0, 1]
 [[nodiscard]] Wrench wrench_at_end(const Wrench& start, const Matrix6d& K, const Matrix6d& D, const Vector6d& drift,
@@ -108,6 +117,7 @@ struct ImplicitStep {
   Vector6d spring = Vector6d::Zero(), damper = Vector6d::Zero();  ///< of the coupling, at the start
   Matrix6d K = Matrix6d::Zero(), D = Matrix6d::Zero();            ///< of the coupling
   bool with_contact = false;                                      ///< loads.contact is in A and b
+  bool with_mutual = false;                                       ///< loads.contact_mutual is in b
 };
 [[nodiscard]] ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt);
 /// Moves the body with velocity u1. @param solved  wrench of the contacts solved in between: dt solved = A u1 - b

@@ -58,6 +58,7 @@ class ConvexStep {
   [[nodiscard]] double force(std::size_t row) const { return -rows_[row].k * std::min(0.0, rows_[row].z); }
   /// Its linearised gap at the end of the step [m].
   [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].z; }
+  [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
   [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
   /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.

@@ -24,7 +24,8 @@
 //
 // Accuracy. Rows are linear; motion and surfaces are curved. Within one step a row lets through, and gives back in the
 // next, half of the place's displacement times the change of the normal: (v dt)^2 / (2 rho) for a place that slides
-// with speed v along a wall of radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r.
+// with speed v along a wall of radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r,
+// and r |I^-1 (omega x L)| dt^2 / 2 for one of a body whose spin changes its axis (dynamics/free_rotation.hpp).
 // Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there is no
 // formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7 um.
 #pragma once

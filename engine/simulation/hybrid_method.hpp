@@ -58,10 +58,10 @@ class PairMethod {
   [[nodiscard]] virtual bool needs_voxels() const { return true; }
   /// Removes from the voxels' contacts those that the method answers itself. Keeps the order.
   virtual void take_over(ContactList& /*contacts*/) const {}
-  /// Before there are forces, in implicit steps: changes the contacts' normals, unit or shorter. Returns whether it
-  /// changed any.
+  /// Before there are forces, in implicit steps against a body that does not move: changes the contacts' normals, unit
+  /// or shorter. Returns whether it changed any.
   virtual bool act_on_normals(ContactList& /*contacts*/, const Pose& /*X_AB*/) { return false; }
-  /// After each contact has its force, before the sum, in explicit steps: changes the forces.
+  /// After each contact has its force, before the sum, in all other cases: changes the forces.
   virtual void act_on_forces(ContactList& /*contacts*/, const Pose& /*X_AB*/) {}
   /// After the sum: changes what both bodies get. What is taken from one side is to be taken from the other.
   virtual void act_on_sides(const ContactList& /*contacts*/, const Pose& /*X_AB*/, LinkSides& /*sides*/) {}

@@ -120,11 +120,11 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "7b958facdda2bc69"),
-    ("peg_in_hole_step", ["--duration", "3"], "2da4c2c51057d97f"),
-    ("head_tracking", [], "4a0d5865b5d4d8ff"),
-    ("slide", [], "859ccd7348b0d485"),
-    ("stack", [], "f056d4f1e8bfb9de"),
+    ("peg_in_hole", ["--duration", "3"], "b8a2c45b30d0f817"),
+    ("peg_in_hole_step", ["--duration", "3"], "a3d9e83d73623060"),
+    ("head_tracking", [], "7be82201c4e57cc3"),
+    ("slide", [], "b64eb8085f7b44c3"),
+    ("stack", [], "75a0bfd26138fa1b"),
 ]
 
 if __name__ == "__main__":

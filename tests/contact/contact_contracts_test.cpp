@@ -133,6 +133,9 @@ TEST(CollisionLinkDeathTest, RespondsWithAStepAndALaw) {
   lopsided.inverse_mass(0, 5) = 1e-3;
   EXPECT_BROKEN(link.respond(first, lopsided, {}, kStep), "is_symmetric(second.inverse_mass)");
   EXPECT_BROKEN(link.respond(lopsided, second, {}, kStep), "is_symmetric(first.inverse_mass)");
+  LinkBody spent = second;  // its coupling would have used more than there is
+  spent.budget = -10;
+  EXPECT_BROKEN(link.respond(first, spent, {}, kStep), "budget > 0");
 }
 
 TEST(MeshTreeDeathTest, HoldsTrianglesOfFiniteCorners) {

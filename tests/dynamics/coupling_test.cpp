@@ -82,7 +82,9 @@ TEST(CouplingBudget, StaysBelowItsLimitAtEveryMassStepAndStiffness) {
           ASSERT_LE(c.stiffness, stiffness);
           ASSERT_GT(c.angular_stiffness, 0);
           ASSERT_LE(c.angular_stiffness, stiffness);
-          EXPECT_EQ(make_coupling(body, dt, {stiffness, stiffness}, false).stiffness, stiffness);
+          const Coupling implicit = make_coupling(body, dt, {stiffness, stiffness}, false);
+          EXPECT_EQ(implicit.stiffness, stiffness);
+          EXPECT_EQ(implicit.budget_used, 0) << "it takes from explicit forces what it does not need";
         }
 }
 

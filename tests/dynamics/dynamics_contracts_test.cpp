@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "engine/dynamics/free_rotation.hpp"
 #include "engine/dynamics/integrator.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/support/broken.hpp"
@@ -73,6 +74,14 @@ class StepDeathTest : public ::testing::TestWithParam<void (*)(RigidBody&, const
   Loads loads_;
   double dt_ = kStep;
 };
+
+TEST(FreeRotationDeathTest, TurnsABodyThatHasMoments) {
+  RigidBody body = brick(1, {1, 2, 3});
+  EXPECT_BROKEN(turned_freely(body, Vector3d::UnitX(), 0), "is_positive(dt)");
+  EXPECT_BROKEN(turned_freely(RigidBody(), Vector3d::UnitX(), kStep), "I[0] > 0");
+  body.R_WB = kTwiceUnit;
+  EXPECT_BROKEN(turned_freely(body, Vector3d::UnitX(), kStep), "is_unit(body.R_WB)");
+}
 
 TEST(ScaleDeathTest, ScalesContactsByAFraction) {
   for (const double scale : {-0.1, 1.1, kNaN}) {

@@ -57,12 +57,14 @@ Scene box_over_plate(Hybrid hybrid, Unknown unknown) {
   return scene;
 }
 
+constexpr double kSpeed = 0.1;  // m/s
+
 /// A hand presses the box down and slides it to the right.
-Scene sliding_box(Hybrid hybrid, Unknown unknown) {
+Scene sliding_box(Hybrid hybrid, Unknown unknown, double speed) {
   Scene scene = box_over_plate(hybrid, unknown);
   const double pressed = 0.5 * kThick + 0.018;
   scene.devices = {
-      scenes::hand_along({{-0.09, 0, 0.5 * kThick + 0.021}, {-0.09, 0, pressed}, {0.09, 0, pressed}}, 0.1)};
+      scenes::hand_along({{-0.09, 0, 0.5 * kThick + 0.021}, {-0.09, 0, pressed}, {0.09, 0, pressed}}, speed)};
   scene.grasps = {{0, kBox}};
   return scene;
 }
@@ -73,8 +75,8 @@ struct Slide {
 };
 
 /// What happens once the box lies on the plate, while its middle is between `from` and `to` [m].
-Slide slide(Hybrid hybrid, Unknown unknown, double from, double to) {
-  Simulation simulation(sliding_box(hybrid, unknown), {});
+Slide slide(Hybrid hybrid, Unknown unknown, double from, double to, double speed = kSpeed) {
+  Simulation simulation(sliding_box(hybrid, unknown, speed), {});
   Slide result;
   Vector3d before = Vector3d::Zero();
   while (simulation.frame() < simulation.frames_planned()) {
@@ -99,14 +101,21 @@ TEST(Groove, IsCrossedByWhatSlidesFlatOverIt) {
 }
 
 // Up to the border the precise answer stands as if all were known: quiet, where voxels rattle. Beyond it is the voxels'
-// and no worse than theirs; and the way from one to the other is not worse than that either.
+// and no worse than theirs; and the way from one to the other is not worse than that either. How hard a box rattles
+// over voxels is a draw: 8 to 18 N for speeds from 0.09 to 0.11 m/s. The worst of five of each are compared.
 TEST(Border, OfWhatIsKnownIsCrossedWithoutAJump) {
   constexpr double kBefore = -0.026;  // the box's front is a millimetre before the groove
   const Slide before = slide(hybrid::exact, Unknown::right, -0.1, kBefore);
   EXPECT_LE(before.height_max, 1e-9);
   EXPECT_LE(before.step_max, 1e-4);
-  const Slide voxels = slide(hybrid::off, Unknown::right, -0.1, 0.1);
-  const Slide across = slide(hybrid::exact, Unknown::right, kBefore, 0.03);
+  Slide voxels, across;
+  const auto add = [](Slide& worst, const Slide& one) {
+    worst = {std::max(worst.step_max, one.step_max), std::max(worst.height_max, one.height_max)};
+  };
+  for (const double speed : {0.096, 0.098, kSpeed, 0.102, 0.104}) {
+    add(voxels, slide(hybrid::off, Unknown::right, -0.1, 0.1, speed));
+    add(across, slide(hybrid::exact, Unknown::right, kBefore, 0.03, speed));
+  }
   EXPECT_LE(across.height_max, 1.1 * voxels.height_max);
   EXPECT_LE(across.step_max, 1.1 * voxels.step_max);
 }

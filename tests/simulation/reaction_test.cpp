@@ -1,14 +1,14 @@
 // What acts on one body acts back on the other, and what is written down is what acted.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "tests/simulation/hybrid_scenes.hpp"
+#include "tests/simulation/link_wrench.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace verisim::reaction_test {
 namespace {
 
+using test::link_wrench;
 using test::tolerance;
 
 /// One box flies past the middle of another: both turn.
@@ -45,21 +45,6 @@ TEST_P(EveryMethod, KeepsTheMomentumOfTwoFreeBodies) {
   EXPECT_GT((simulation.body_twist(0).linear - first_before).norm(), 0.05) << "they have met";
   EXPECT_LE((momentum() - before).norm(), tolerance(1e-9 * before.norm()));
   EXPECT_GE(simulation.energy().contact, -1e-12);
-}
-
-/// The wrench of the frame's one link [N, N m]; none if its bodies are not near.
-Wrench link_wrench(const Simulation& simulation) {
-  if (simulation.table_rows().empty()) return {};
-  Schema schema;
-  simulation.describe(schema);
-  for (const Column& column : schema.table()) {
-    if (column.path != "/state/links/wrench") continue;
-    std::array<double, 6> v{};
-    std::memcpy(v.data(), simulation.table_rows().data() + column.offset, sizeof v);
-    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-  }
-  ADD_FAILURE() << "no wrench in the table";
-  return {};
 }
 
 TEST_P(EveryMethod, TellsOfALinkAndOfAFixedBodyWhatActedOnTheOneThatMoves) {

@@ -1,5 +1,7 @@
 #include "engine/simulation/stages/exact_response.hpp"
 
+#include <Eigen/Cholesky>
+
 #include "engine/base/error.hpp"
 #include "engine/simulation/stages/groups.hpp"
 
@@ -115,16 +117,28 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
   cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt));
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
-  for (OfBody& of : bodies_) {
-    if (of.in_solver == exact::kFixed) continue;
-    of.velocity = solver_->velocity(of.in_solver);
-    of.wrench = solver_->wrench(of.in_solver);
-  }
+  read_bodies(world.dt);
   std::size_t first_row = 0;
   for (const std::size_t l : world.near_links) {
     if (!belongs(l)) continue;
     read_rows(world, l, first_row, cost);
     first_row += links_[l].search->rows().rows().size();
+  }
+}
+
+/// What the solver found for its bodies.
+void ExactResponse::read_bodies(double dt) {
+  const bool alone = solver_->body_count() == 1;
+  for (OfBody& of : bodies_) {
+    if (of.in_solver == exact::kFixed) continue;
+    of.velocity = solver_->velocity(of.in_solver);
+    of.wrench = solver_->wrench(of.in_solver);
+    if (alone) continue;
+    // A stiff row's force has the roundings of its gap times its stiffness, 1e-9 of it and more. The velocity that
+    // exactly these forces give keeps the momentum of bodies that push each other.
+    Vector6d impulse;
+    impulse << dt * of.wrench.force, dt * of.wrench.torque;
+    of.velocity = of.step.free + of.step.A.llt().solve(impulse);
   }
 }
 

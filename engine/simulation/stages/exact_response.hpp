@@ -53,6 +53,7 @@ class ExactResponse {
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
   void solve_island(const World& world, std::size_t island, FrameCost& cost);
+  void read_bodies(double dt);
   void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
 
   std::unique_ptr<exact::ConvexStep> solver_;  ///< null: no pair has precise contacts

@@ -10,6 +10,7 @@ namespace verisim {
 
 Passivity::Passivity(const World& world)
     : watched_(world.bodies.size(), false),
+      unbounded_(world.bodies.size(), false),
       group_(world.bodies.size()),
       work_(world.bodies.size()),
       scale_(world.bodies.size(), 1) {}
@@ -33,9 +34,9 @@ void Passivity::bound(const World& world, const Contacts& contacts, const PairMe
                       const Response& response, const ExactResponse& exact, const Ledger& ledger) {
   std::fill(scale_.begin(), scale_.end(), 1);
   if (!watch_links(world, contacts, methods) || !world.parameters.passive_contacts) return;
-  const auto in_a_group = [&](std::size_t i) { return world.moves(world.bodies[i]) && !exact.solved(i); };
+  const auto moves = [&](std::size_t i) { return world.moves(world.bodies[i]); };
   join_bodies(world, group_, [&](std::size_t l) {
-    return contacts.touches(l) && in_a_group(world.links[l].first) && in_a_group(world.links[l].second);
+    return contacts.touches(l) && moves(world.links[l].first) && moves(world.links[l].second);
   });
   bound_groups(world, response, exact, ledger.contact());
 }
@@ -44,6 +45,9 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   std::fill(work_.begin(), work_.end(), ContactWork{});
   for (std::size_t i = 0; i < group_.size(); ++i)
     if (watched_[i]) watched_[group_[i]] = true;
+  std::fill(unbounded_.begin(), unbounded_.end(), false);
+  for (std::size_t i = 0; i < group_.size(); ++i)
+    if (exact.solved(i)) unbounded_[group_[i]] = true;
   for (std::size_t i = 0; i < group_.size(); ++i) {
     const Body& body = world.bodies[i];
     if (!watched_[group_[i]] || !world.moves(body) || exact.solved(i)) continue;
@@ -52,7 +56,7 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   }
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (group_[i] == i && watched_[i]) {
-      scale_[i] = passive_scale(std::max(0.0, budget), work_[i]);
+      scale_[i] = unbounded_[i] ? 1 : passive_scale(std::max(0.0, budget), work_[i]);
       VERISIM_ASSERT(is_fraction(scale_[i]));
       budget -= work_[i].at(scale_[i]);
     }

@@ -2,8 +2,8 @@
 // when one was switched off, give no more energy than all contacts were given.
 //
 // Bodies that move and touch each other are one group. One scale acts for all of a group: what is taken from
-// one side of a contact is taken from the other, and momentum stays. A body that the exact response moves is alone: it
-// has all of its contacts.
+// one side of a contact is taken from the other, and momentum stays. A group with a body that the exact response moves
+// has all of its contacts: that response takes them as they are.
 #pragma once
 
 #include <vector>
@@ -31,6 +31,7 @@ class Passivity {
   /// The last frame in which a link was watched: since its method changed something, until the two bodies part.
   std::vector<std::uint64_t> watched_in_;
   std::vector<bool> watched_;       ///< bodies, groups by their first body
+  std::vector<bool> unbounded_;     ///< groups, by their first body
   std::vector<std::size_t> group_;  ///< of each body: the first body of its group
   std::vector<ContactWork> work_;   ///< of groups, by their first body
   std::vector<double> scale_;

@@ -12,12 +12,17 @@ struct SideOfLink {
   bool solved;  ///< by the exact response
 };
 
-/// What the voxels' contacts of a link did to one of its bodies. To one that stands still they did what the reaction
-/// is of what they did to the other; where both stand still, what they would have done.
+/// What the voxels' contacts of a link did to one of its bodies. Between two that move they acted as at the start. To
+/// one that stands still they did what the reaction is of what they did to the other; where both stand still, what they
+/// would have done.
 Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& theirs) {
   const auto on = [&](const LinkSide& side, const ContactEnd& end) {
     return wrench_at_end(side.wrench, side.stiffness, side.damping, side.drift, end, world.dt);
   };
+  if (world.moves(mine.body) && world.moves(theirs.body)) {
+    const double scale = mine.end.mutual_scale;
+    return {scale * mine.start.wrench.force, scale * mine.start.wrench.torque};
+  }
   if (world.moves(mine.body)) return on(mine.start, mine.end);
   if (!world.moves(theirs.body)) return mine.start.wrench;
   const bool at_start = !world.is_implicit() && !theirs.solved;

@@ -1,5 +1,6 @@
 #include "engine/simulation/stages/response.hpp"
 
+#include "engine/base/error.hpp"
 #include "engine/simulation/stages/grasping.hpp"
 
 namespace verisim {
@@ -7,11 +8,19 @@ namespace {
 
 constexpr double kStabilityBudget = 4;  // dt^2 k lambda + 2 dt b lambda stays below it (contact/penalty.hpp)
 
-void add(Loads& loads, const LinkSide& side) {
-  loads.contact += side.wrench;
+/// @param mutual  both bodies of the link move
+void add(Loads& loads, const LinkSide& side, bool mutual) {
+  (mutual ? loads.contact_mutual : loads.contact) += side.wrench;
   loads.contact_stiffness += side.stiffness;
   loads.contact_damping += side.damping;
   loads.contact_drift += side.drift;
+}
+
+/// Are the link's contacts taken at the start of the step, and their stiffness limited? An implicit step takes the
+/// other body as it is: two that move would each answer with another force (dynamics/integrator.hpp).
+bool is_explicit(const World& world, std::size_t l) {
+  const Link& link = world.links[l];
+  return !world.is_implicit() || (world.moves(world.bodies[link.first]) && world.moves(world.bodies[link.second]));
 }
 
 }  // namespace
@@ -39,6 +48,7 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
     OfBody& of = bodies_[i];
     of.links_touching = 0;
     of.loads.contact = {};
+    of.loads.contact_mutual = {};
     of.loads.contact_stiffness.setZero();
     of.loads.contact_damping.setZero();
     of.loads.contact_drift.setZero();
@@ -47,12 +57,13 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
     if (world.moves(body)) of.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
   }
   for (const std::size_t l : world.near_links) {
-    if (!contacts.touches(l)) continue;
+    if (!contacts.touches(l) || !is_explicit(world, l)) continue;
     ++bodies_[world.links[l].first].links_touching;
     ++bodies_[world.links[l].second].links_touching;
   }
   for (OfBody& of : bodies_) {
     const double left = kStabilityBudget - (of.loads.coupling != nullptr ? of.loads.coupling->budget_used : 0);
+    VERISIM_ASSERT(left > 0);
     if (of.links_touching > 0) of.link_body.budget = left / of.links_touching;
   }
 }
@@ -66,8 +77,9 @@ void Response::respond(const World& world, const Contacts& contacts, const PairM
     cost.lookups += found.hits + found.misses;
     cost.recognitions += found.recognitions;
     cost.memo_overflows += found.overflows;
-    add(bodies_[world.links[l].first].loads, sides_[l].first);
-    add(bodies_[world.links[l].second].loads, sides_[l].second);
+    const bool mutual = world.is_implicit() && is_explicit(world, l);
+    add(bodies_[world.links[l].first].loads, sides_[l].first, mutual);
+    add(bodies_[world.links[l].second].loads, sides_[l].second, mutual);
   }
 }
 
@@ -76,24 +88,21 @@ void Response::respond(const World& world, std::size_t l, const Contacts& contac
   const LinkBody& second = bodies_[world.links[l].second].link_body;
   CollisionLink& link = contacts.link(l);
   LinkSides& sides = sides_[l];
-  const bool implicit = world.is_implicit();
   const SimulationParameters& p = world.parameters;
-  // An implicit step takes the other body as going on as it did: of two that move, each would answer with another
-  // force. Only against what does not move may the stiffness go beyond the explicit bound.
-  const bool stabilize = !implicit || (!first.inverse_mass.isZero(0) && !second.inverse_mass.isZero(0));
-  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, stabilize};
+  const bool at_start = is_explicit(world, l);
+  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start};
   if (method == nullptr) {
     link.respond(first, second, penalty, world.dt);
-    link.sum_up(first, second, implicit, sides);
+    link.sum_up(first, second, !at_start, sides);
     return;
   }
   const Pose X_AB = contacts.X_AB(world, l);
-  if (implicit && method->act_on_normals(link.contacts(), X_AB)) {
+  if (!at_start && method->act_on_normals(link.contacts(), X_AB)) {
     link.respond_at_once(first, second, penalty, world.dt, sides);
   } else {
     link.respond(first, second, penalty, world.dt);
-    if (!implicit) method->act_on_forces(link.contacts(), X_AB);
-    link.sum_up(first, second, implicit, sides);
+    if (at_start) method->act_on_forces(link.contacts(), X_AB);
+    link.sum_up(first, second, !at_start, sides);
   }
   method->act_on_sides(link.contacts(), X_AB, sides);
 }

@@ -29,7 +29,7 @@ class Response {
   struct OfBody {
     Loads loads;
     LinkBody link_body;
-    unsigned links_touching = 0;  ///< they share the body's stability budget
+    unsigned links_touching = 0;  ///< explicit ones: they share the body's stability budget
   };
   void prepare_bodies(const World& world, const Contacts& contacts);
   void respond(const World& world, std::size_t link, const Contacts& contacts, PairMethod* method);
