@@ -90,8 +90,8 @@ std::string rows_by_h5py(const Folder& folder, const std::string& files) {
   return content_of(folder.file("rows.txt"));
 }
 
-/// One kill; the file, if there is one already, is recovered and holds all but the last 100 frames. Paced, these are
-/// the frames of 100 ms of wall clock, in which the writer may not have been given the processor.
+/// One kill; the file, if there is one already, is recovered and holds all but the last 100 frames. Paced, these last
+/// 30 ms here, for which the writer may not have been given the processor.
 void check_one_kill(const Folder& folder, std::uint64_t trial, bool paced, microseconds delay) {
   const std::string path = folder.file("run.h5");
   const std::uint64_t missing_max = paced ? 200 : 100;

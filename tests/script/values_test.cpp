@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/length.hpp"
 #include "tests/script/bare_sandbox.hpp"
 
 namespace verisim::script {
@@ -46,7 +47,7 @@ Made make_many(std::uint64_t units, std::size_t memory) {
 
 TEST(Values, AreTakenApartWhereverTheAllowanceEnds) {
   std::set<std::string> metatables;
-  for (std::uint64_t units = 1; units < 60'000; units += 37) {
+  for (std::uint64_t units = 1; units < 60'000; units += test::by_length(370U, 37U, 7U)) {
     metatables.insert(make_many(units, std::size_t{16} << 20).metatable);
     ASSERT_EQ(Counted::alive, 0) << "after " << units << " units";
   }
@@ -55,14 +56,14 @@ TEST(Values, AreTakenApartWhereverTheAllowanceEnds) {
 
 TEST(Values, AreTakenApartWhereverTheMemoryEnds) {
   int ended_by_memory = 0;
-  for (std::size_t memory = 60'000; memory < 130'000; memory += 137) {
+  for (std::size_t memory = 60'000; memory < 130'000; memory += test::by_length(1370U, 137U, 37U)) {
     try {
       if (make_many(10'000'000, memory).failure.find("of memory") != std::string::npos) ++ended_by_memory;
     } catch (const Error&) {  // too small for Lua itself
     }
     ASSERT_EQ(Counted::alive, 0) << "with " << memory << " bytes";
   }
-  EXPECT_GT(ended_by_memory, 10);
+  EXPECT_GT(ended_by_memory, test::by_length(1, 10, 10));
 }
 
 }  // namespace
