@@ -10,7 +10,7 @@ namespace verisim::ruler {
 struct Accuracy {
   double absolute = 2e-7;           ///< m; a search ends when it misses no more than this
   double relative = 0.01;           ///< or this part of the depth
-  std::uint32_t pieces_max = 4000;  ///< or after so many pieces; `bound` then says what may be missed
+  std::uint32_t pieces_max = 1500;  ///< or after so many pieces; `bound` then says what may be missed
 };
 
 struct Depth {

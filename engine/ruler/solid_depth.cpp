@@ -65,7 +65,7 @@ OutSide out_side_of(Values& values, std::size_t divider, double wanted) {
   const double kept = values[divider];
   values[divider] = out.sign * kInfinity;
   for (std::size_t i = 0; i < values.size() && out.margin < wanted; ++i) {
-    if (i == divider || std::abs(values[i]) >= wanted) continue;
+    if (i == divider || std::abs(values[i]) != out.margin) continue;  // not the one that decides
     out.margin = std::max(out.margin, std::min(values.tree_with(i, -kInfinity), values.tree_with(i, kInfinity)));
   }
   values[divider] = kept;
@@ -413,6 +413,7 @@ class Search {
     double limit = kInfinity;
     for (std::uint32_t i = 0; i < values_b_.size(); ++i) {
       const double distance = std::abs(values_b_[i]);
+      if (distance > limit + 2 * radius) continue;
       const OutSide out = out_side_of(values_b_, i, distance + 2 * radius);
       if (out.margin >= distance) limit = std::min(limit, distance + radius);
       if (out.margin < distance + 2 * radius) {
