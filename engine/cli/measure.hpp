@@ -1,7 +1,7 @@
 // `verisim replay --measure`: the recorded penetration of each pair beside its true overlap (engine/ruler).
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

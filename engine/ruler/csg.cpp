@@ -205,8 +205,38 @@ class CsgReader {
   Csg& csg_;
 };
 
+namespace {
+
+/// A ball around a face, round ones taken as whole turns.
+struct Ball {
+  Vector3d middle;
+  double radius;
+};
+
+Ball around(const Face& face, const Divider& divider) {
+  const double v = 0.5 * (face.v_low + face.v_high), half = 0.5 * (face.v_high - face.v_low);
+  switch (divider.kind) {
+    case Divider::Kind::plane:
+      return {face.origin, hypotenuse(face.u_high, face.v_high)};
+    case Divider::Kind::sphere:
+      return {face.origin, divider.radius};
+    case Divider::Kind::cylinder:
+      return {face.origin + v * face.z, hypotenuse(divider.radius, half)};
+    case Divider::Kind::cone:
+      return {face.origin + v * divider.cosine * face.z, hypotenuse(face.v_high * divider.sine, half * divider.cosine)};
+  }
+  return {};
+}
+
+}  // namespace
+
 Csg::Csg(std::string_view text) {
   CsgReader(text, *this).read();
+  for (const Face& face : faces_) middle_ += face.origin / static_cast<double>(faces_.size());
+  for (const Face& face : faces_) {
+    const Ball ball = around(face, dividers_[face.divider]);
+    radius_ = std::max(radius_, (ball.middle - middle_).norm() + ball.radius);
+  }
 }
 
 double Csg::value(std::span<const double> values) const {
@@ -235,6 +265,7 @@ double Csg::value(std::span<const double> values) const {
 
 Csg Csg::placed(const Pose& X) const {
   Csg result = *this;
+  result.middle_ = X * middle_;
   for (Divider& divider : result.dividers_) divider = ruler::placed(divider, X);
   for (Face& face : result.faces_) {
     face.origin = X * face.origin;

@@ -37,6 +37,9 @@ class Csg {
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   /// T, from the values of the dividers. @pre one value for each
   [[nodiscard]] double value(std::span<const double> values) const;
+  /// A ball around all of its faces.
+  [[nodiscard]] const Vector3d& middle() const { return middle_; }
+  [[nodiscard]] double radius() const { return radius_; }
   /// The same solid elsewhere.
   [[nodiscard]] Csg placed(const Pose& X) const;
 
@@ -51,6 +54,8 @@ class Csg {
   std::vector<Node> nodes_;
   std::vector<Divider> dividers_;
   std::vector<Face> faces_;
+  Vector3d middle_ = Vector3d::Zero();
+  double radius_ = 0;
 };
 
 }  // namespace verisim::ruler

@@ -5,6 +5,8 @@
 // `bend_radius` is 0. Written for the ruler alone: it shares no code with engine/geometry.
 #pragma once
 
+#include <cmath>
+
 #include "engine/base/pose.hpp"
 
 namespace verisim::ruler {
@@ -25,6 +27,11 @@ struct Local {
   double bend_radius;  ///< distance to the axis or centre, infinite for a plane: no second derivative is larger than
                        ///< 1/bend_radius (and acts across the axis alone), no third than 2/sqrt(3)/bend_radius^2
 };
+
+/// sqrt rounds alike everywhere; the C library's hypot need not.
+[[nodiscard]] inline double hypotenuse(double a, double b) {
+  return std::sqrt(a * a + b * b);
+}
 
 [[nodiscard]] Divider placed(const Divider& divider, const Pose& X);
 [[nodiscard]] double value_at(const Divider& divider, const Vector3d& x);

@@ -18,6 +18,9 @@ namespace verisim::ruler {
 /// Of a's surface in b. About 2 us for each piece. @pre both in the same coordinates
 [[nodiscard]] Depth depth_in(const Csg& a, const Csg& b, const Accuracy& accuracy);
 
+/// Is one farther from the middle of the other than that reaches? Cheap; false says nothing.
+[[nodiscard]] bool are_apart(const Csg& a, const Csg& b);
+
 /// Distance of x to b's surface if x lies within b, else 0. Of edges and corners whose faces are curved the nearest
 /// point is found by Newton's method, and right to second order in the depth over the radius.
 [[nodiscard]] double depth_of(const Vector3d& x, const Csg& b);

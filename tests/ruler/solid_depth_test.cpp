@@ -60,8 +60,8 @@ TEST(SolidDepth, OfCrossingEdgesIsTheDistanceToTheNearerFace) {
                d * std::sqrt(0.5), 1e-8);
 }
 
-// A pin of radius r and a bore of radius R whose axes cross at an angle t, in a block of height h: at the bore's rims the
-// pin's section is an ellipse r wide in one direction and r/cos t in the other, moved by (h/2) tan t: there its
+// A pin of radius r and a bore of radius R whose axes cross at an angle t, in a block of height h: at the bore's rims
+// the pin's section is an ellipse r wide in one direction and r/cos t in the other, moved by (h/2) tan t: there its
 // side is r/cos t + (h/2) tan t from the bore's axis. The nearest of the pin's own points to the block's surface lies
 // within: the rim itself is (h/2) sin t + r - R cos t inside the pin, measured across the pin.
 TEST(SolidDepth, OfATiltedPinInABoreIsThatOfTheBoresRimInThePin) {
@@ -94,7 +94,8 @@ TEST(SolidDepth, OfACornerInACornerIsTheDistanceOfBoth) {
 
 // A sum of two primitives that touch has no surface between them.
 TEST(SolidDepth, KnowsThatTouchingPrimitivesAreOne) {
-  const ruler::Csg post("sum(placed(0,0,0.01;0,0,0,1;box(0.02,0.02,0.02)),placed(0,0,-0.01;0,0,0,1;box(0.02,0.02,0.02)))");
+  const ruler::Csg post(
+      "sum(placed(0,0,0.01;0,0,0,1;box(0.02,0.02,0.02)),placed(0,0,-0.01;0,0,0,1;box(0.02,0.02,0.02)))");
   EXPECT_NEAR(ruler::depth_of({0, 0, 0}, post), 0.01, test::tolerance(1e-15));
   EXPECT_NEAR(ruler::depth_of({0.008, 0, 1e-9}, post), 0.002, test::tolerance(1e-15));
 }
@@ -102,15 +103,16 @@ TEST(SolidDepth, KnowsThatTouchingPrimitivesAreOne) {
 // Rigid motions change the roundings alone; what is found may differ by what the search may miss.
 TEST(SolidDepth, IsTheSameElsewhereAndTheOtherWayRound) {
   const std::vector<std::string> solids = {
-      "sphere(0.01)", "cylinder(0.01,0.03)", "box(0.02,0.03,0.01)", "cone(0.002,0.01,0.02)", "tube(0.012,0.008,0.02)",
-      "difference(box(0.04,0.04,0.02),cylinder(0.006,0.03))"};
+      "sphere(0.01)",          "cylinder(0.01,0.03)",    "box(0.02,0.03,0.01)",
+      "cone(0.002,0.01,0.02)", "tube(0.012,0.008,0.02)", "difference(box(0.04,0.04,0.02),cylinder(0.006,0.03))"};
   const RandomStream random(1, "elsewhere");
   int deep = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     const std::string& a = solids[i % solids.size()];
     const std::string& b = solids[(i / solids.size()) % solids.size()];
-    const Pose X_WA = ruler::test::random_pose(random, 100 * i, 0.012), X_WB = ruler::test::random_pose(random, 100 * i + 10, 0.001);
+    const Pose X_WA = ruler::test::random_pose(random, 100 * i, 0.012),
+               X_WB = ruler::test::random_pose(random, 100 * i + 10, 0.001);
     const Pose X = ruler::test::random_pose(random, 100 * i + 20, 0.5);
     const ruler::Accuracy accuracy{.absolute = 1e-6, .relative = 0.01, .pieces_max = 4000};
     const Overlap here = of(a, X_WA, b, X_WB, accuracy), there = of(a, X * X_WA, b, X * X_WB, accuracy),

@@ -59,7 +59,8 @@ double densely(const TriangleMesh& a, const Pose& X_BA, const Judge& b, double s
 }
 
 // A point of a triangle is at most `spacing` from a sampled one, and depths change by at most 1 m per m. The solids'
-// surfaces are off from their triangles by the height of an arc over its chord, which is measured at the triangles' middles.
+// surfaces are off from their triangles by the height of an arc over its chord, which is measured at the triangles'
+// middles.
 TEST(TriangleDepth, AndSolidDepthAgreeWithDenselySampledTriangles) {
   const std::vector<std::shared_ptr<const Solid>> solids = {
       primitive(Solid::Kind::box, {0.02, 0.03, 0.01}), primitive(Solid::Kind::cylinder, {0.01, 0.03}),
