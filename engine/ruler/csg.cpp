@@ -263,6 +263,34 @@ double Csg::value(std::span<const double> values) const {
   return at.back();
 }
 
+double Csg::least_value(std::span<const double> low, std::span<const double> high) const {
+  VERISIM_ASSERT(low.size() == dividers_.size());
+  VERISIM_ASSERT(high.size() == dividers_.size());
+  thread_local std::vector<std::array<double, 2>> at;  // of the nodes: from, to
+  at.resize(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Node& node = nodes_[i];
+    const std::array<double, 2> a =
+        node.operation == Operation::divider ? std::array{low[node.first], high[node.first]} : at[node.first];
+    const std::array<double, 2> b = node.operation < Operation::least ? a : at[node.second];
+    switch (node.operation) {
+      case Operation::divider:
+        at[i] = a;
+        break;
+      case Operation::complement:
+        at[i] = {-a[1], -a[0]};
+        break;
+      case Operation::least:
+        at[i] = {std::min(a[0], b[0]), std::min(a[1], b[1])};
+        break;
+      case Operation::greatest:
+        at[i] = {std::max(a[0], b[0]), std::max(a[1], b[1])};
+        break;
+    }
+  }
+  return at.back()[0];
+}
+
 Csg Csg::placed(const Pose& X) const {
   Csg result = *this;
   result.middle_ = X * middle_;

@@ -37,6 +37,8 @@ class Csg {
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   /// T, from the values of the dividers. @pre one value for each
   [[nodiscard]] double value(std::span<const double> values) const;
+  /// The least that T can be while each divider's value is within its range. @pre a range for each
+  [[nodiscard]] double least_value(std::span<const double> low, std::span<const double> high) const;
   /// A ball around all of its faces.
   [[nodiscard]] const Vector3d& middle() const { return middle_; }
   [[nodiscard]] double radius() const { return radius_; }

@@ -95,6 +95,7 @@ class Search {
     cut_by_own(own, patch, radius, proven, likely);
     cut_by_other(patch, radius, proven, likely);
     if (proven.is_empty()) return 0;
+    if (least_tree(patch, radius, proven) > 0) return 0;
     double limit = tree_b > 0 ? radius - tree_b : kInfinity;
     limit = std::min(limit, limit_by_faces(patch, radius, proven));
     if (limit > enough() && !likely.is_empty()) look_at(own, patch, likely);
@@ -133,6 +134,22 @@ class Search {
       if (out.margin > radius) keep_below(model_of(b_.dividers()[i], patch, out.sign), proven, likely);
     }
   }
+  /// What the tree of B is at least, on what is left of the patch: above 0, nothing of it is within B.
+  double least_tree(const Patch& patch, double radius, const Polygon& proven) {
+    low_.resize(values_b_.size());
+    high_.resize(values_b_.size());
+    for (std::size_t i = 0; i < values_b_.size(); ++i) {
+      low_[i] = values_b_[i] - radius;
+      high_[i] = values_b_[i] + radius;
+      if (low_[i] > 0 || high_[i] < 0) continue;
+      const Model model = model_of(b_.dividers()[i], patch, 1);
+      low_[i] =
+          std::max(low_[i], -largest({-model.linear.at, -model.linear.du, -model.linear.dv}, proven) - model.below);
+      high_[i] = std::min(high_[i], largest(model.linear, proven) + model.above);
+    }
+    return b_.least_value(low_, high_);
+  }
+
   static void keep_below(const Model& model, Polygon& proven, Polygon& likely) {
     Linear linear = model.linear;
     likely.keep_below(linear);
@@ -265,6 +282,7 @@ class Search {
   PointDepth point_depth_;
   std::priority_queue<Piece> waiting_;
   std::vector<std::uint32_t> cutting_;
+  std::vector<double> low_, high_;  ///< of b's dividers on a patch
   static constexpr std::size_t kUncertainMax = 6;
   std::vector<Linear> depths_;            ///< bounds of the last patch's depth
   std::vector<std::uint32_t> uncertain_;  ///< dividers of b near it that may not be b's surface there
