@@ -32,6 +32,8 @@ constexpr std::array kFigures = {
     RunFigure{"null_misses", "1", "of those, the ones that led to no constraint", get<&RunFigures::null_misses>},
     RunFigure{"max_force_N", "N", "largest contact force on a body", get<&RunFigures::force_max>},
     RunFigure{"max_penetration_m", "m", "deepest contact", get<&RunFigures::penetration_max>},
+    RunFigure{"penetration_source", "", "what said that: voxels, exact surfaces or triangles",
+              get<&RunFigures::penetration_source>},
     RunFigure{"outcome", "", "the scenario's own word", get<&RunFigures::outcome>},
     RunFigure{"end", "", "how the run ended", get<&RunFigures::end>},
     RunFigure{"state_hash", "", "hash of every value of /state", get<&RunFigures::state_hash>},

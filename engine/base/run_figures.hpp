@@ -24,6 +24,7 @@ struct RunFigures {
     std::uint32_t p50 = 0, p99 = 0, max = 0;
   };
   std::string scenario, run_file, outcome, end, state_hash;
+  std::string penetration_source;  ///< what said penetration_max: "voxels", "exact surfaces", "triangles"; or empty
   std::uint64_t frames = 0, collision_frames = 0, overruns = 0;
   std::uint64_t collisions = 0, cache_hits = 0, cache_misses = 0, null_misses = 0;
   bool realtime_priority = false;

@@ -6,6 +6,7 @@
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/json_text.hpp"
+#include "engine/cli/measure.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/origin.hpp"
 #include "engine/cli/session.hpp"
@@ -49,22 +50,30 @@ void say_if_from_elsewhere(const RunFile& file) {
                text("commit").c_str(), VERISIM_VERSION, commit().c_str());
 }
 
-void tell(const std::string& path, const RunFile& file, const std::string& hash, bool verify,
+struct Replay {
+  std::string path;
+  bool verify = false, measure = false;
+};
+
+void tell(const Replay& asked, const RunFile& file, const std::string& hash, const std::vector<MeasuredPair>& measured,
           const SimulateOptions& o) {
   if (o.json) {
-    const nlohmann::ordered_json report = {
-        {"run_file", path}, {"frames", file.rows()}, {"state_hash", hash}, {"verified", verify}};
+    nlohmann::ordered_json report = {
+        {"run_file", asked.path}, {"frames", file.rows()}, {"state_hash", hash}, {"verified", asked.verify}};
+    if (asked.measure) report["measured"] = json_of(measured);
     std::printf("%s\n", json_text(report).c_str());
   } else if (!o.quiet) {
-    std::printf("%s: %zu frames simulated again, state hash %s%s\n", path.c_str(), file.rows(), hash.c_str(),
-                !verify ? ""
+    std::printf("%s: %zu frames simulated again, state hash %s%s\n", asked.path.c_str(), file.rows(), hash.c_str(),
+                !asked.verify ? ""
                 : file.format_version() < 2
                     ? ", every value of /state and /events equal"
                     : ", every value of /state, /cost and /events, every attribute and figure equal");
+    if (asked.measure) std::fputs(table_of(measured).c_str(), stdout);
   }
 }
 
-int replay(const std::string& path, bool verify, const SimulateOptions& o) {
+int replay(const Replay& asked, const SimulateOptions& o) {
+  const auto& [path, verify, measure] = asked;
   use_simd_target(o.simd);
   const RunFile file(path);
   if (file.recovered())
@@ -83,7 +92,10 @@ int replay(const std::string& path, bool verify, const SimulateOptions& o) {
   check_contents(file);
   const ScenarioOptions options = options_from_header(file.header());
   auto inputs = std::make_unique<Inputs>(Inputs::stored(file.header().files, file.header().models));
-  Session session = open_session(options, std::move(inputs), o.threads, true);
+  std::vector<MeasuredBody> bodies;
+  Session session = open_session(options, std::move(inputs), o.threads, true, [&](const Scene& scene) {
+    if (measure) bodies = measured_bodies(scene);
+  });
   Simulation& simulation = *session.simulation;
 
   Schema schema;
@@ -115,7 +127,7 @@ int replay(const std::string& path, bool verify, const SimulateOptions& o) {
     differs(difference_in_summary(file, session));
     if (!altered.empty()) differs(altered.front());
   }
-  tell(path, file, hash, verify, o);
+  tell(asked, file, hash, measure ? measure_run(file, bodies) : std::vector<MeasuredPair>(), o);
   return 0;
 }
 
@@ -123,20 +135,25 @@ int replay(const std::string& path, bool verify, const SimulateOptions& o) {
 
 void add_replay(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("replay", "Simulates again from the run file alone");
-  auto path = std::make_shared<std::string>();
-  auto verify = std::make_shared<bool>(false);
+  auto asked = std::make_shared<Replay>();
   auto options = std::make_shared<SimulateOptions>();
-  command->add_option("RUN.h5", *path, "Run file")->required();
+  command->add_option("RUN.h5", asked->path, "Run file")->required();
   command->add_flag(
-      "--verify", *verify,
+      "--verify", asked->verify,
       "Compare every row, event, attribute and figure, and the checksums of what cannot be computed again; name "
       "the first frame, field or attribute that differs (exit 1)");
+  command->add_flag("--measure", asked->measure,
+                    "Measure the true overlap of every pair that came near, in every frame, from the recorded poses "
+                    "and the shapes alone, beside the recorded penetration: a line per pair with the frames in which "
+                    "either was largest and in which they differ most; --json has every frame");
   command->add_option("--threads", options->threads, "Threads (same bits for any number)")->check(CLI::Range(1, 256));
   command->add_option("--simd", options->simd, "SIMD target (same bits)");
   command->add_flag("--json", options->json, "One JSON object on stdout");
   command->add_flag("--quiet", options->quiet, "Say nothing");
-  command->footer("Example: verisim replay runs/peg_in_hole.h5 --verify");
-  command->callback([=, &exit_code] { exit_code = replay(*path, *verify, *options); });
+  command->footer(
+      "Examples: verisim replay runs/peg_in_hole.h5 --verify\n"
+      "          verisim replay runs/peg_in_hole.h5 --verify --measure");
+  command->callback([=, &exit_code] { exit_code = replay(*asked, *options); });
 }
 
 }  // namespace verisim::cli

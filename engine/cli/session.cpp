@@ -43,7 +43,8 @@ void check_duration(const SimulationParameters& parameters, bool from_command_li
 
 }  // namespace
 
-Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet) {
+Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet,
+                     const std::function<void(const Scene&)>& look) {
   const StopWatch watch;
   const MemoryUse use("building the scene of " + options.path);
   Session session;
@@ -51,6 +52,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
   session.inputs = std::move(inputs);
   session.scenario = std::make_unique<Scenario>(options, *session.inputs);
   Scene scene = session.scenario->take_scene();
+  if (look) look(scene);
   session.seed = scene.parameters.seed;
   check_duration(scene.parameters, options.duration.has_value());
   std::vector<std::string> notices = session.scenario->notices();

@@ -2,6 +2,7 @@
 // replay.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -21,8 +22,9 @@ struct Session {
 };
 
 /// Reads scenario and models, builds the simulation. Notices go to stderr (unless quiet) and to the events.
+/// `look`, if given, sees the scene before the simulation takes it.
 [[nodiscard]] Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads,
-                                   bool quiet);
+                                   bool quiet, const std::function<void(const Scene&)>& look = {});
 
 /// The files and folders that the command line names, which a scenario may read wherever they lie.
 [[nodiscard]] std::vector<std::string> named_paths(const ScenarioOptions& options);

@@ -75,6 +75,7 @@ RunFigures figures_of(const Session& session, LoopResult& loop, const std::strin
   s.load_s = session.load_s;
   s.force_max = totals.force_max;
   s.penetration_max = totals.penetration_max;
+  s.penetration_source = totals.penetration_source;
   s.frame_ns = times_of(loop.frame_ns);
   s.collision_frame_ns = times_of(loop.collision_frame_ns);
   s.measures = session.scenario->measures();
@@ -111,7 +112,8 @@ std::string to_table(const RunFigures& run) {
   row("frame", times(run.frame_ns));
   if (run.collision_frames > 0) row("frame with contact", times(run.collision_frame_ns));
   row("largest force", fmt::format("{:.3g} N", run.force_max));
-  row("deepest penetration", fmt::format("{:.3g} mm", run.penetration_max * 1e3));
+  row("deepest penetration", fmt::format("{:.3g} mm{}{}", run.penetration_max * 1e3,
+                                         run.penetration_source.empty() ? "" : ", by ", run.penetration_source));
   for (const Measure& m : run.measures) row(m.name.c_str(), fmt::format("{:.6g} {}", m.value, m.unit));
   row("state hash", run.state_hash);
   row("run file", run.run_file);

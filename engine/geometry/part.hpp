@@ -21,6 +21,7 @@ struct Part {
   double area = 0;      ///< m^2
   bool watertight = false;
   bool exact = false;              ///< faces, edges and mass come from exact geometry
+  std::string solid;               ///< made from a Solid: its text (solid.hpp), in part coordinates; not in tables
   std::vector<std::string> notes;  ///< repairs and warnings, one sentence each
 
   [[nodiscard]] bool has_brep() const { return !faces.empty(); }

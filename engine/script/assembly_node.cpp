@@ -41,9 +41,16 @@ bool same(const Pose& a, const Pose& b) {
   return a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
-std::vector<Part> parts_of(const Leaf& leaf, Inputs& inputs) {
+/// `one_placement`: the leaf's pose belongs to the body's.
+std::vector<Part> parts_of(const Leaf& leaf, Inputs& inputs, bool one_placement) {
   const Node& node = *leaf.node;
-  if (node.kind == Node::Kind::solid) return {inputs.solid(*scaled(node.solid, leaf.scale), LoadOptions{})};
+  if (node.kind == Node::Kind::solid) {
+    const std::shared_ptr<const Solid> solid = scaled(node.solid, leaf.scale);
+    Part part = inputs.solid(*solid, LoadOptions{});
+    const Pose inner = one_placement ? Pose{} : leaf.pose;
+    part.solid = Solid{Solid::Kind::placed, {}, {solid}, inner}.text();
+    return {std::move(part)};
+  }
   const std::vector<Part>& parts = load_file(inputs, node.file, leaf.scale, node.recover);
   if (node.part == 0) return parts;
   if (static_cast<std::size_t>(node.part) > parts.size())
@@ -137,7 +144,7 @@ PlacedParts resolve(const std::vector<std::shared_ptr<Node>>& nodes, Inputs& inp
   for (const Leaf& leaf : leaves) one_placement = one_placement && same(leaf.pose, leaves.front().pose);
   if (one_placement) result.pose = leaves.front().pose;
   for (const Leaf& leaf : leaves) {
-    for (const Part& part : parts_of(leaf, inputs))
+    for (const Part& part : parts_of(leaf, inputs, one_placement))
       result.parts.push_back(one_placement ? part : placed(part, leaf.pose));
     if (result.stem.empty() && leaf.node->kind == Node::Kind::model) result.stem = stem_of(leaf.node->file);
   }

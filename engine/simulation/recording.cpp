@@ -38,6 +38,11 @@ double depth_of(const Stages& stages, std::size_t l) {
   return std::max(stages.contacts.depth_max(l), stages.exact.depth_max(l));
 }
 
+const char* source_of_depth(const World& world, const Stages& stages, std::size_t l) {
+  if (stages.exact.depth_max(l) >= stages.contacts.depth_max(l)) return "exact surfaces";
+  return world.parameters.contact == ContactMethod::fcl ? "triangles" : "voxels";
+}
+
 void declare_links(const World& world, const Stages& stages, Columns& columns) {
   const std::vector<std::string> constraint_names(kConstraintKindNames.begin(), kConstraintKindNames.end());
   const auto add = [&](const char* name, const char* units, const char* description, auto get,
@@ -176,7 +181,10 @@ void Recording::add_up(const World& world, const Stages& stages, const FrameCost
   totals_.contacts += cost.contacts;
   decltype(totals_.constraint_frames) active{};  // 0 or 1 per kind
   for (const std::size_t l : world.near_links) {
-    totals_.penetration_max = std::max(totals_.penetration_max, depth_of(stages, l));
+    if (depth_of(stages, l) > totals_.penetration_max) {
+      totals_.penetration_max = depth_of(stages, l);
+      totals_.penetration_source = source_of_depth(world, stages, l);
+    }
     const LookUps found = stages.methods.look_ups(l);
     totals_.cache_hits += found.hits;
     totals_.cache_misses += found.misses;

@@ -19,6 +19,7 @@ RunFigures distinct() {
   run.outcome = "o";
   run.end = "e";
   run.state_hash = "h";
+  run.penetration_source = "p";
   std::uint64_t n = 100;
   for (std::uint64_t* count : {&run.frames, &run.collision_frames, &run.overruns, &run.collisions, &run.cache_hits,
                                &run.cache_misses, &run.null_misses})
@@ -49,7 +50,7 @@ TEST(RunFigures, EachHasAValueOfItsOwn) {
     EXPECT_TRUE(values.insert(text_of(figure.value(run))).second) << figure.name;
     EXPECT_NE(std::string(figure.meaning), "") << figure.name;
   }
-  EXPECT_EQ(values.size(), 21U) << "20 fields and the real-time factor";
+  EXPECT_EQ(values.size(), 22U) << "21 fields and the real-time factor";
 }
 
 // The names are a promise to users (INTERFACES section 1); two that were swapped would pass the test above.
@@ -66,6 +67,7 @@ TEST(RunFigures, BelongToTheirNames) {
   EXPECT_EQ(said["overruns"], std::to_string(run.overruns));
   EXPECT_EQ(said["max_force_N"], std::to_string(run.force_max));
   EXPECT_EQ(said["max_penetration_m"], std::to_string(run.penetration_max));
+  EXPECT_EQ(said["penetration_source"], "p");
   EXPECT_EQ(said["wall_s"], std::to_string(run.wall_s));
   EXPECT_EQ(said["load_s"], std::to_string(run.load_s));
   EXPECT_EQ(said["simulated_s"], std::to_string(run.simulated_s));

@@ -1,4 +1,5 @@
 """A run file holds all that is needed to simulate again; what differs is found and named."""
+import json
 import os
 import shutil
 import unittest
@@ -53,6 +54,33 @@ end)"""
             e["text"] = b"something else"
             f["/events"][0] = e
         self.refuse(1, "event 0", "replay", self.changed(event), "--verify")
+
+    BALL = """
+defineSimulationParameters{ allBodiesAreDynamic=true, gravity={0,0,-9.81}, duration=0.1, hybrid="off" }
+addObject{ name="plate", fixed=true, voxelsize=0.002, Solid.box{0.1,0.1,0.02} }
+addObject{ name="ball", voxelsize=0.002, density=2000, position={0.001,0.002,0.031}, Solid.sphere{radius=0.02} }"""
+
+    def test_measure_gives_the_true_overlap_beside_the_recorded_one(self):
+        """A ball over a plate overlaps it by its radius less its height over the plate's face, at 0.01 m."""
+        run_file, summary = self.small_run(script=self.BALL)
+        measured = json.loads(self.succeed("replay", run_file, "--verify", "--measure", "--json").stdout)["measured"]
+        pair, = measured["pairs"]
+        self.assertEqual((pair["first"], pair["second"], pair["source"]), ("plate", "ball", "solids"))
+        with h5py.File(run_file) as f:
+            height = f["/state/body/ball/pose"][:, 2]
+            recorded = numpy.zeros(len(height))
+            recorded[f["/state/links/frame"][:]] = f["/state/links/max_penetration"][:]
+        truth = numpy.maximum(0, 0.03 - height)
+        self.assertGreater(truth.max(), 1e-5, "the ball never sank in: this would prove nothing")
+        self.assertTrue((numpy.array(pair["overlap_m"]) <= truth + 1e-12).all())
+        self.assertTrue((truth <= numpy.array(pair["overlap_m"]) + numpy.array(pair["bound_m"]) + 1e-12).all())
+        self.assertEqual(pair["recorded_m"], list(recorded[1:]))
+        worst = measured["largest_difference"]
+        self.assertEqual(worst["recorded_m"], pair["recorded_m"][worst["frame"]])
+        self.assertEqual(worst["overlap_m"], pair["overlap_m"][worst["frame"]])
+        self.assertIn("largest difference: plate ~ ball, frame %d" % worst["frame"],
+                      self.succeed("replay", run_file, "--measure").stdout)
+        self.assertEqual(summary["penetration_source"], "voxels")
 
     def test_without_embedded_inputs_there_is_nothing_to_replay(self):
         run_file, _ = self.small_run("--no-embed")

@@ -15,6 +15,7 @@ from source_text import ROOT, code_of, declarations, functions, header_in, inclu
 # (geometry/cad) is a program of its own, which nobody includes.
 MAY_INCLUDE = {
     "base": "",
+    "ruler": "base",
     "geometry": "base",
     "geometry/cad": "base geometry",
     "voxel": "base geometry",

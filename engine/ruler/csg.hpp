@@ -1,0 +1,63 @@
+// A solid described by primitives and booleans of them, as the ruler knows it: a tree over surfaces that divide space,
+// and the pieces of these surfaces that can be its own. Read from the text of a Solid (engine/geometry/solid.hpp),
+// which is data here: nothing of the CAD kernel's or the engine's geometry is asked.
+//
+// The tree's value T(x) [m] at a point: union = min, common part = max, complement = -. Negative inside. It is never
+// larger than the distance to the solid's surface, and changes by at most 1 m per m.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/ruler/divider.hpp"
+
+namespace verisim::ruler {
+
+/// A rectangle of parameters (u, v) on a divider; its x, y and z are directions of the solid's coordinates.
+///   plane     origin + u x + v y                                        [m, m]
+///   cylinder  origin + radius (cos u x + sin u y) + v z                 [rad, m]
+///   cone      apex + v (sine (cos u x + sin u y) + cosine z)            [rad, m along the slant]
+///   sphere    centre + radius (cos v (cos u x + sin u y) + sin v z)     [rad, rad]
+struct Face {
+  std::uint32_t divider = 0;
+  Vector3d origin = Vector3d::Zero();
+  Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  double u_low = 0, u_high = 0, v_low = 0, v_high = 0;
+};
+
+class Csg {
+ public:
+  /// Error(input) if it is not the text of a Solid.
+  explicit Csg(std::string_view text);
+
+  [[nodiscard]] const std::vector<Divider>& dividers() const { return dividers_; }
+  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  /// T, from the values of the dividers. @pre one value for each
+  [[nodiscard]] double value(std::span<const double> values) const;
+  /// The least that T can be while each divider's value is within its range. @pre a range for each
+  [[nodiscard]] double least_value(std::span<const double> low, std::span<const double> high) const;
+  /// A ball around all of its faces.
+  [[nodiscard]] const Vector3d& middle() const { return middle_; }
+  [[nodiscard]] double radius() const { return radius_; }
+  /// The same solid elsewhere.
+  [[nodiscard]] Csg placed(const Pose& X) const;
+
+ private:
+  friend class CsgReader;
+  enum class Operation : std::uint8_t { divider, complement, least, greatest };
+  /// After those it works on. `divider`: its index; complement: of the node `first`.
+  struct Node {
+    Operation operation;
+    std::uint32_t first = 0, second = 0;
+  };
+  std::vector<Node> nodes_;
+  std::vector<Divider> dividers_;
+  std::vector<Face> faces_;
+  Vector3d middle_ = Vector3d::Zero();
+  double radius_ = 0;
+};
+
+}  // namespace verisim::ruler

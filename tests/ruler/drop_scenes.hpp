@@ -1,0 +1,161 @@
+// Random drops and presses: a body of some kind falls, or is pressed by a hand, onto a seat of some kind. Metres.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/pinned_math.hpp"
+#include "engine/base/random.hpp"
+#include "engine/device/sources.hpp"
+#include "engine/geometry/loader.hpp"
+#include "engine/simulation/simulation.hpp"
+
+namespace verisim::drops {
+
+using SolidPtr = std::shared_ptr<const Solid>;
+
+inline SolidPtr make(Solid::Kind kind, std::vector<double> sizes, std::vector<SolidPtr> children = {}, Pose X = {}) {
+  return std::make_shared<Solid>(Solid{kind, std::move(sizes), std::move(children), X});
+}
+inline SolidPtr box(double x, double y, double z) {
+  return make(Solid::Kind::box, {x, y, z});
+}
+inline SolidPtr cylinder(double radius, double height) {
+  return make(Solid::Kind::cylinder, {radius, height});
+}
+inline SolidPtr cone(double below, double above, double height) {
+  return make(Solid::Kind::cone, {below, above, height});
+}
+inline SolidPtr ball(double radius) {
+  return make(Solid::Kind::sphere, {radius});
+}
+inline SolidPtr operator+(const SolidPtr& a, const SolidPtr& b) {
+  return make(Solid::Kind::sum, {}, {a, b});
+}
+inline SolidPtr operator-(const SolidPtr& a, const SolidPtr& b) {
+  return make(Solid::Kind::difference, {}, {a, b});
+}
+inline SolidPtr operator*(const SolidPtr& a, const SolidPtr& b) {
+  return make(Solid::Kind::intersection, {}, {a, b});
+}
+inline SolidPtr moved(const SolidPtr& a, const Vector3d& by, const Vector3d& turn = Vector3d::Zero()) {
+  return make(Solid::Kind::placed, {}, {a}, {by, rotation_from_vector(turn)});
+}
+
+/// A regular prism of n sides that lie `inner` from its axis.
+inline SolidPtr prism(int n, double inner, double height) {
+  SolidPtr all;
+  for (int i = 0; i < n; ++i) {
+    const SolidPtr half =
+        moved(moved(box(0.08, 0.08, height), {inner - 0.04, 0, 0}), {}, {0, 0, pinned::kFullTurn * i / n});
+    all = all ? all * half : half;
+  }
+  return all;
+}
+
+struct Kind {
+  std::string name;
+  SolidPtr solid;
+};
+
+inline std::vector<Kind> body_kinds() {
+  return {{"ball", ball(0.01)},
+          {"pin", cylinder(0.008, 0.03)},
+          {"disc", cylinder(0.015, 0.006)},
+          {"tube", make(Solid::Kind::tube, {0.01, 0.006, 0.02})},
+          {"cone", cone(0.0, 0.01, 0.02)},
+          {"frustum", cone(0.006, 0.01, 0.016)},
+          {"box", box(0.03, 0.02, 0.014)},
+          {"prism3", prism(3, 0.006, 0.02)},
+          {"prism5", prism(5, 0.008, 0.02)},
+          {"prism6", prism(6, 0.008, 0.02)},
+          {"prism8", prism(8, 0.008, 0.02)},
+          {"chamfered", cylinder(0.008, 0.02) + moved(cone(0.006, 0.008, 0.002), {0, 0, -0.011})},
+          {"stepped", cylinder(0.006, 0.03) + moved(cylinder(0.01, 0.012), {0, 0, 0.009})},
+          {"keyed", cylinder(0.008, 0.02) + moved(box(0.006, 0.004, 0.02), {0.008, 0, 0})}};
+}
+
+/// Their upper faces, or highest points, at z = 0.
+inline std::vector<Kind> seat_kinds() {
+  const double eighth = pinned::kFullTurn / 8, quarter = 2 * eighth;
+  const SolidPtr block = moved(box(0.12, 0.12, 0.04), {0, 0, -0.02});
+  const SolidPtr low = moved(box(0.12, 0.12, 0.02), {0, 0, -0.03});
+  return {{"plane", block},
+          {"hole", block - cylinder(0.0085, 0.1)},
+          {"wide_hole", block - cylinder(0.02, 0.1)},
+          {"pit", block - moved(box(0.04, 0.04, 0.03), {0, 0, 0.005})},
+          {"bowl", block - moved(ball(0.03), {0, 0, 0.01})},
+          {"funnel", block - moved(cone(0.006, 0.036, 0.03), {0, 0, -0.015})},
+          {"groove", block - moved(box(0.03, 0.2, 0.03), {}, {0, eighth, 0})},
+          {"slot", block - moved(box(0.022, 0.2, 0.03), {0, 0, 0.005})},
+          {"trough", block - moved(cylinder(0.02, 0.2), {0, 0, 0.005}, {quarter, 0, 0})},
+          {"post", low + moved(cylinder(0.006, 0.03), {0, 0, -0.015})},
+          {"square_post", low + moved(box(0.012, 0.012, 0.03), {0, 0, -0.015})},
+          {"ridge", low + moved(box(0.02, 0.1, 0.02), {0, 0, -0.02 * std::sqrt(0.5)}, {0, eighth, 0})},
+          {"spike", low + moved(cone(0.02, 0.002, 0.03), {0, 0, -0.015})},
+          {"step", low + moved(box(0.06, 0.12, 0.02), {-0.03, 0, -0.01})}};
+}
+
+/// A kind with its part, loaded once.
+struct Loaded {
+  std::string name;
+  Part part;
+};
+inline std::vector<Loaded> loaded(const std::vector<Kind>& kinds) {
+  std::vector<Loaded> all;
+  for (const Kind& kind : kinds) {
+    all.push_back({kind.name, load_solid(*kind.solid, {})});
+    all.back().part.solid = kind.solid->text();
+  }
+  return all;
+}
+
+struct DropScene {
+  Scene scene;  ///< body 0: the seat; body 1: what falls
+  bool pressed = false;
+};
+
+/// Of even seeds the body falls, at up to 1 m/s when it begins; of odd ones a hand presses it down, held any way up.
+inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed) {
+  const RandomStream random(seed, "drop");
+  const auto between = [&](std::uint64_t k, double low, double high) { return low + (high - low) * random.uniform(k); };
+  DropScene result;
+  result.pressed = seed % 2 == 1;
+  Scene& scene = result.scene;
+  scene.parameters.hybrid = hybrid::exact;
+  scene.parameters.integrator = Integrator::implicit;
+  scene.parameters.all_bodies_are_dynamic = true;
+  scene.parameters.gravity = {0, 0, -9.81};
+  scene.parameters.max_stiffness = 1000;
+  scene.parameters.max_angular_stiffness = 1;
+  BodyDescription below, above;
+  below.name = "seat";
+  below.fixed = true;
+  below.parts = {seat.part};
+  above.name = "body";
+  above.density = 2000;
+  above.parts = {body.part};
+  below.voxel_size = above.voxel_size = 0.002;
+  above.X_WB.position = {between(0, -0.01, 0.01), between(1, -0.01, 0.01), between(2, 0.021, 0.026)};
+  const Vector3d turn(between(3, -1, 1), between(4, -1, 1), between(5, -1, 1));
+  above.X_WB.rotation = rotation_from_vector(3 * turn);
+  if (!result.pressed) {
+    above.twist.linear = {between(6, -0.1, 0.1), between(7, -0.1, 0.1), between(8, -0.9, 0)};
+    above.twist.angular = {between(9, -5, 5), between(10, -5, 5), between(11, -5, 5)};
+  } else {
+    HandDescription hand;
+    hand.name = "hand";
+    Pose target = above.X_WB;
+    hand.path.push_back({target, 0.2, 0.01});
+    target.position.z() = between(12, -0.02, 0);
+    hand.path.push_back({target, between(13, 0.1, 0.5), 1});
+    scene.devices = {make_hand(hand)};
+    scene.grasps = {{0, 1}};
+  }
+  scene.bodies = {std::move(below), std::move(above)};
+  return result;
+}
+
+}  // namespace verisim::drops
