@@ -1,6 +1,6 @@
 -- Any assembly: one of its parts, or several as one, is pulled out along a direction and pushed back; or it is brought
 -- to its place from outside by a hand that misjudges where that is. The model shipped: a roller bearing (NU 204) in its
--- housing, and its shaft (20 g6).
+-- housing, and its shaft (20 g6). What of a fit is not known and was left to voxels stands in the summary.
 --   verisim run scenarios/assembly.lua --set way=in --set hybrid=exact
 --   verisim run scenarios/assembly.lua --set way=in --set hybrid=exact --set instead=models/shaft_m6.step
 --   verisim run scenarios/assembly.lua --set way=in --set hybrid=exact --set part=bearing --set without=shaft

@@ -23,7 +23,7 @@ struct PairFigures {
   std::string first, second, hybrid;
   std::uint64_t contacts = 0, by_voxels = 0;
   std::string why;  ///< voxels answered some; empty: they did not
-  [[nodiscard]] double share() const {
+  [[nodiscard]] double fraction() const {
     return contacts > 0 ? static_cast<double>(by_voxels) / static_cast<double>(contacts) : 0;
   }
 };

@@ -33,7 +33,7 @@ ordered_json json_of_figure(const RunFigure::Value& value) {
 }
 
 std::string row_of(const PairFigures& pair) {
-  return fmt::format("{:.3g} % of {} contacts of {} and {}, {}{}{}", 100 * pair.share(), pair.contacts, pair.first,
+  return fmt::format("{:.3g} % of {} contacts of {} and {}, {}{}{}", 100 * pair.fraction(), pair.contacts, pair.first,
                      pair.second, pair.hybrid, pair.why.empty() ? "" : ": ", pair.why);
 }
 
@@ -108,10 +108,10 @@ RunFigures figures_of(const Session& session, LoopResult& loop, const std::strin
 
 std::string fallback_warning(const RunFigures& run) {
   constexpr double kMost = 0.01;  // of the frames with contact
-  const double share = run.exact_frames > 0
-                           ? static_cast<double>(run.exact_frames_by_voxels) / static_cast<double>(run.exact_frames)
-                           : 0;
-  if (!(share > kMost)) return {};
+  const double fraction = run.exact_frames > 0
+                              ? static_cast<double>(run.exact_frames_by_voxels) / static_cast<double>(run.exact_frames)
+                              : 0;
+  if (!(fraction > kMost)) return {};
   const auto by_fewer = [](const PairFigures& a, const PairFigures& b) {
     const auto of = [](const PairFigures& pair) { return pair.hybrid == "exact" ? pair.by_voxels : 0; };
     return of(a) < of(b);
@@ -119,7 +119,7 @@ std::string fallback_warning(const RunFigures& run) {
   const auto worst = std::max_element(run.pairs.begin(), run.pairs.end(), by_fewer);
   VERISIM_ASSERT(worst != run.pairs.end());
   return fmt::format("hybrid = \"exact\" was asked for, and voxels answered in {:.3g} % of the frames with contact: {}",
-                     100 * share, worst->why);
+                     100 * fraction, worst->why);
 }
 
 std::string to_json(const RunFigures& run) {
@@ -134,7 +134,7 @@ std::string to_json(const RunFigures& run) {
                           {"hybrid", pair.hybrid},
                           {"contacts", pair.contacts},
                           {"by_voxels", pair.by_voxels},
-                          {"share", pair.share()},
+                          {"fraction", pair.fraction()},
                           {"why", pair.why}});
   j["measures"] = ordered_json::object();
   for (const Measure& m : run.measures) j["measures"][m.name] = {{"value", m.value}, {"unit", m.unit}};

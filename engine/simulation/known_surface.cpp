@@ -18,6 +18,10 @@ void add_sentence(std::string& text, const std::string& more) {
   text += (text.empty() ? "" : "; ") + more;
 }
 
+bool is_bare(const KnownSurface& known) {
+  return !known.declared && !known.refused && known.parts_without_brep == known.parts;
+}
+
 /// What a method that needs entities, or one that needs precise surfaces, does not find in a body.
 std::string gap_of(const Body& body, bool precise) {
   const KnownSurface& known = body.surface;
@@ -26,7 +30,7 @@ std::string gap_of(const Body& body, bool precise) {
                ? fmt::format("the faces of '{}' were declared by hand: voxels know them, 'exact' does not", body.name)
                : "";
   if (known.refused) return fmt::format("no b-rep: '{}' was added with brep = false", body.name);
-  if (known.parts_without_brep == known.parts)
+  if (is_bare(known))
     return fmt::format("no b-rep: '{}' is of bare triangles (Model{{ FILE, brep = true }} looks for faces)", body.name);
   std::string text;
   if (known.parts_without_brep > 0)
@@ -62,6 +66,9 @@ KnownSurface known_surface(const BodyDescription& description) {
 
 std::string gaps_of(const Body& first, const Body& second, Hybrid asked) {
   if (!asked->needs_entities()) return {};
+  if (is_bare(first.surface) && is_bare(second.surface))
+    return fmt::format("no b-rep: '{}' and '{}' are of bare triangles (Model{{ FILE, brep = true }} looks for faces)",
+                       first.name, second.name);
   std::string text;
   for (const Body* body : {&first, &second}) add_sentence(text, gap_of(*body, asked->needs_precise_surfaces()));
   return text;

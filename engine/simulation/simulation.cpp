@@ -83,8 +83,8 @@ std::vector<Event> Simulation::last_events() const {
   for (const PairAnswers& of : answers())
     events.push_back({time(), "voxels",
                       fmt::format("voxels answered {} of {} contacts ({:.3g} %) of '{}' and '{}' under {}{}{}",
-                                  of.by_voxels, of.contacts, 100 * of.share(), of.first_name, of.second_name, of.method,
-                                  of.why.empty() ? "" : ": ", of.why)});
+                                  of.by_voxels, of.contacts, 100 * of.fraction(), of.first_name, of.second_name,
+                                  of.method, of.why.empty() ? "" : ": ", of.why)});
   return events;
 }
 

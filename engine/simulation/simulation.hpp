@@ -38,7 +38,7 @@ struct PairAnswers {
   std::uint64_t contacts = 0, by_voxels = 0;
   std::string why;  ///< voxels answered some; empty: they did not
 
-  [[nodiscard]] double share() const { return static_cast<double>(by_voxels) / static_cast<double>(contacts); }
+  [[nodiscard]] double fraction() const { return static_cast<double>(by_voxels) / static_cast<double>(contacts); }
 };
 
 class Simulation {
