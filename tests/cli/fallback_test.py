@@ -105,6 +105,39 @@ class Fallback(ProgramTest):
         self.assertEqual(summary["exact_frames"], 0)
         self.assertNotIn("was asked for", said)
 
+    def test_the_warning_begins_above_one_frame_in_a_hundred(self):
+        """A block slides over a drawn plate to a stop that is a bare mesh of the same body: exact, then both."""
+        self.write("stop.stl", turned_stl(inner=0, outer=10, height=20))
+        scenario = self.write("slide.lua", """
+            defineSimulationParameters{ hybrid = "exact", duration = 1 }
+            addObject{ name = "plate", fixed = true, voxelsize = mm(1), Solid.box{0.1, 0.06, 0.01},
+                       Transform{ position = {0.036, 0, 0.0151}, Model{ "stop.stl", scale = 0.001 } } }
+            local block = addObject{ name = "block", voxelsize = mm(1), position = {-0.03, 0, 0.011}, density = 1000,
+                                     Solid.box{0.02, 0.02, 0.012} }
+            local hand = Devices.Hand{ name = "hand", path = { {position = {-0.03, 0, 0.0105}},
+              {position = {-0.03, 0, 0.0105}, dwell = 0.1}, {position = {0.02, 0, 0.0105}, speed = 0.1} } }
+            addDevice(hand)
+            grasp(hand, block)""")
+
+        def run(name, *options):
+            done = self.succeed("run", scenario, "-o", self.path(name), "--json", *options)
+            self.succeed("replay", self.path(name), "--verify")
+            summary = json.loads(done.stdout)
+            self.assert_told(self.path(name), summary)
+            _, frames, _ = self.counted(self.path(name))
+            self.assertEqual((summary["exact_frames"], summary["exact_frames_by_voxels"]), frames)
+            return frames[1] / frames[0], done.stderr.count("was asked for")
+
+        fraction, warnings = run("long.h5")
+        self.assertGreater(fraction, 0.01)
+        self.assertEqual(warnings, 1)
+        with h5py.File(self.path("long.h5")) as f:
+            frame, by_voxels = f["state/links/frame"][()], f["state/links/by_voxels"][()]
+        first = int(frame[by_voxels > 0][0])
+        fraction, warnings = run("short.h5", "--duration", f"{(first + 2) / 1000}")
+        self.assertTrue(0 < fraction <= 0.01, fraction)
+        self.assertEqual(warnings, 0)
+
     def test_an_event_that_is_missing_or_another_is_found(self):
         run_file, _, _ = self.run_bush("--set", "brep=false")
         with h5py.File(run_file, "r+") as f:
@@ -113,7 +146,7 @@ class Fallback(ProgramTest):
             f["events"][()] = events
         self.refuse(1, ["event", "voxels answered"], "replay", run_file, "--verify")
 
-    def test_an_interrupted_or_diverged_run_tells_what_it_came_to(self):
+    def test_a_run_that_a_script_ends_tells_what_it_came_to(self):
         script = BUSH + "Actions.addFrameAction(function() Actions.waitSeconds(0.55) error('that is enough') end)"
         self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))
         run_file = self.path("it.h5")
