@@ -172,7 +172,7 @@ TEST(Fallback, OfFacesOfAnUnknownKindCountsThem) {
     const std::string why =
         drawn ? "1 of 3 faces of 'pin' is of a kind that is not known" : "recovery declined 1 of 3 faces of 'pin'";
     const Said said = said_by(scene);
-    EXPECT_EQ(said.met, Texts{"contacts of 'block' and 'pin' there stay with the voxels: " + why});
+    EXPECT_EQ(said.met, Texts{why + ": contacts of 'block' and 'pin' there stay with the voxels"});
     EXPECT_EQ(said.answers.why, why);
     EXPECT_EQ(said.answers.fraction(), 1) << "the wall is where they touch";
     EXPECT_GT(said.totals.exact_frames_by_voxels, 0U);
@@ -228,7 +228,7 @@ TEST(Fallback, OfAPartThatIsAMeshActsAndIsTold) {
   scene.bodies[kPin].X_WB.position = {0, 0, 0.0159};  // its end is 4 mm in the stop
   const Said said = said_by(scene);
   const std::string why = "no b-rep: 1 of 2 parts of 'block' is of bare triangles (Model{ FILE, brep = true })";
-  EXPECT_EQ(said.met, Texts{"contacts of 'block' and 'pin' there stay with the voxels: " + why});
+  EXPECT_EQ(said.met, Texts{why + ": contacts of 'block' and 'pin' there stay with the voxels"});
   EXPECT_EQ(said.answers.why, why);
   EXPECT_GT(said.answers.by_voxels, 0U);
 }

@@ -31,7 +31,7 @@ void PairMethods::tell(const World& world, std::size_t l, std::vector<Event>& ev
     say(fmt::format("'{}' has no b-rep: its contacts with '{}' stay with the voxels",
                     (first.entities ? second : first).name, (first.entities ? first : second).name));
   } else if (const std::string gaps = gaps_of(first, second, asked); !gaps.empty()) {
-    say(fmt::format("contacts of '{}' and '{}' there stay with the voxels: {}", first.name, second.name, gaps));
+    say(fmt::format("{}: contacts of '{}' and '{}' there stay with the voxels", gaps, first.name, second.name));
   }
 }
 
