@@ -1,6 +1,6 @@
 -- Any assembly: one of its parts, or several as one, is pulled out along a direction and pushed back; or it is brought
 -- to its place from outside by a hand that misjudges where that is. The model shipped: a roller bearing (NU 204) in its
--- housing, and its shaft (20 g6).
+-- housing, and its shaft (20 g6). What of a fit is not known and was left to voxels stands in the summary.
 --   verisim run scenarios/assembly.lua --set way=in --set hybrid=exact
 --   verisim run scenarios/assembly.lua --set way=in --set hybrid=exact --set instead=models/shaft_m6.step
 --   verisim run scenarios/assembly.lua --set way=in --set hybrid=exact --set part=bearing --set without=shaft
@@ -22,12 +22,14 @@ local p = params{
   tremor = mm(0.02),        -- m rms, `in`
   voxelsize = 0,            -- m; 0: the assembly's largest side / 100
   hybrid = "restore",
+  brep = true,              -- `restore`, `blend`, `exact`: faces of mesh files are recovered from their triangles
   integrator = "implicit",
 }
 if p.way ~= "in" and p.way ~= "out" then error("way is '" .. p.way .. "'; it is one of in, out") end
 
 -- What is there, and what of it is held.
-local options = p.scale > 0 and {scale = p.scale} or {}
+local options = {brep = p.brep and p.hybrid ~= "off"}
+if p.scale > 0 then options.scale = p.scale end
 local function is_called(part, i, wanted)
   return i == tonumber(wanted) or part.name == wanted or part.name:sub(1, #wanted + 1) == wanted .. " "
 end
@@ -100,7 +102,7 @@ defineSimulationParameters{
 }
 for _, part in ipairs(parts) do
   addObject{name = part.name, density = 7800, voxelsize = voxelsize, fixed = true,
-            Model{part.file, part = part.index, scale = options.scale}}
+            Model{part.file, part = part.index, scale = options.scale, brep = options.brep}}
 end
 local start = p.way == "in" and out or osg.Vec3(0, 0, 0)
 local object = {
@@ -108,7 +110,7 @@ local object = {
   position = home + middle + start + beside - turn * middle, orientation = turn,
 }
 for _, part in ipairs(held) do
-  object[#object + 1] = Model{part.file, part = part.index, scale = options.scale}
+  object[#object + 1] = Model{part.file, part = part.index, scale = options.scale, brep = options.brep}
 end
 local body = addObject(object)
 

@@ -9,7 +9,7 @@ local p = params{
   tremor = 0.0005,          -- m rms, at the hand
   duration = 45.833,        -- s
   half = false,
-  hybrid = "off",
+  hybrid = "restore",       -- the dissertation's method; "off", "blend", "exact"
   contact = "voxmap",       -- or "fcl": triangle against triangle, to compare with
   integrator = "semi-implicit",
 }

@@ -5,11 +5,11 @@
 #include <memory>
 
 #include "engine/base/error.hpp"
-#include "engine/base/text.hpp"
 #include "engine/cli/interrupts.hpp"
 #include "engine/cli/memory_wanted.hpp"
 #include "engine/cli/progress_line.hpp"
 #include "engine/cli/realtime_priority.hpp"
+#include "engine/cli/warnings.hpp"
 #include "engine/record/file_replace.hpp"
 #include "engine/record/output_place.hpp"
 
@@ -108,9 +108,12 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
     run.loop = run_loop(simulation, recorder.get(), loop);
     run.loop.realtime_priority = priority.granted();
   }
-  if (options.progress)
-    for (const std::string& warning : run.loop.warnings) std::fprintf(stderr, "warning: %s\n", shown(warning).c_str());
   run.figures = figures_of(session, run.loop, file);
+  if (options.progress) {
+    print_warnings(run.loop.warnings);
+    const std::string fallback = fallback_warning(run.figures);
+    if (!fallback.empty()) print_warnings({fallback});
+  }
   if (run.loop.end != LoopEnd::io_failed)
     recorder->close(to_attributes(run.figures), {{"state_hash", run.figures.state_hash}});
   return run;

@@ -1,5 +1,7 @@
 #include <cstdio>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
@@ -35,8 +37,13 @@ bool is_needed_to_replay(const std::string& altered) {
          altered.starts_with("attribute 'format_version'");
 }
 
+/// Of pairs that keep their voxels' contacts format 1 told those of which one body alone had no b-rep.
 bool is_later_than_format_1(const Event& event) {
-  return event.kind == "near" || event.kind == "tunnelling" || event.kind == "energy" || event.kind == "late contact";
+  static const std::set<std::string> kinds = {"near",    "tunnelling", "energy", "late contact",
+                                              "gravity", "sinking",    "voxels"};
+  if (kinds.count(event.kind) != 0) return true;
+  const auto says = [&](const char* words) { return event.text.find(words) != std::string::npos; };
+  return event.kind == "hybrid" && says("stay with the voxels") && !says("has no b-rep: its contacts with '");
 }
 
 void say_if_from_elsewhere(const RunFile& file) {
@@ -118,6 +125,8 @@ int replay(const Replay& asked, const SimulateOptions& o) {
     if (!verify) continue;
     differs(stored->difference_in_frame(i, row, simulation));
   }
+  if (!is_format_1 && !file.summary().empty())  // else it was killed before its end
+    for (const Event& event : simulation.last_events()) events.push_back(event);
   const std::string hash = to_hex(simulation.state_hash());
   if (verify) {
     // The pairs that are near at the start belong to the first frame.

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/interrupts.hpp"
+#include "engine/cli/warnings.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -66,6 +67,10 @@ class RowSink {
     recorder_->add_table_rows(simulation_.table_rows());
     recorder_->end_row();
     for (const Event& event : simulation_.events()) recorder_->event(event.time, event.kind, event.text);
+  }
+  void finish() {
+    if (recorder_ == nullptr) return;
+    for (const Event& event : simulation_.last_events()) recorder_->event(event.time, event.kind, event.text);
   }
 
  private:
@@ -145,6 +150,7 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
   const Clock::time_point start = Clock::now();
   Clock::time_point last_progress = start;
   Pace pace(simulation.dt(), options.paced);
+  const std::size_t said = simulation.events().size();  // when it was loaded
   try {
     for (std::uint64_t i = 0; i < options.frames && !was_interrupted(); ++i) {
       simulation.prepare();
@@ -158,8 +164,9 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
       result.frame_ns.push_back(timing.frame_ns);
       if (simulation.cost().contacts > 0) result.collision_frame_ns.push_back(timing.frame_ns);
       rows.take();
-      for (const Event& event : simulation.events())
-        if (i > 0 && event.kind == "hybrid") result.warnings.push_back(event.text);  // before: said when it was loaded
+      const std::vector<Event>& events = simulation.events();
+      for (std::size_t e = i == 0 ? said : 0; e < events.size(); ++e)
+        if (is_warning(events[e])) result.warnings.push_back(events[e].text);
       simulation.clear_events();
       if (options.progress && end - last_progress > std::chrono::milliseconds(200)) {
         options.progress(i + 1);
@@ -185,6 +192,7 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
     }
     result.error = error.what();
   }
+  if (result.end != LoopEnd::io_failed) rows.finish();
   result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   return result;
 }

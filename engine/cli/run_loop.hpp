@@ -24,7 +24,7 @@ enum class LoopEnd { done, interrupted, diverged, io_failed, refused };  ///< re
 struct LoopResult {
   LoopEnd end = LoopEnd::done;
   std::string error;                  ///< for diverged, io_failed and refused
-  std::vector<std::string> warnings;  ///< methods that were asked for and cannot act on a pair that met on the way
+  std::vector<std::string> warnings;  ///< events of the run that are warnings (cli/warnings.hpp)
   std::uint64_t overruns = 0;
   std::vector<std::uint32_t> block_overruns;        ///< of each whole block of frames, if empty blocks are measured
   std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block after each
@@ -37,6 +37,7 @@ struct LoopResult {
 /// Adds the /timing columns behind the simulation's own.
 void add_timing_columns(Schema& schema);
 
+/// What a run of the simulation ends with is recorded too: Simulation::last_events.
 /// Runs until `frames` are done, the scenario has finished, a signal (interrupts.hpp), divergence, or the recorder
 /// failed. `recorder` may be null. The loop itself allocates nothing.
 /// @pre the recorder's schema is the simulation's, then the timing columns

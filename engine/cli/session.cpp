@@ -13,6 +13,7 @@
 #include "engine/cli/memory_wanted.hpp"
 #include "engine/cli/origin.hpp"
 #include "engine/cli/stop_watch.hpp"
+#include "engine/cli/warnings.hpp"
 
 namespace verisim::cli {
 
@@ -67,8 +68,10 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
   const auto warn = [&](const std::string& text) {
     if (!quiet) std::fprintf(stderr, "warning: %s\n", shown(text).c_str());
   };
+  std::vector<std::string> warnings;
   for (const Event& event : session.simulation->events())
-    if (event.kind == "hybrid") warn(event.text);  // a method that was asked for and cannot act on a pair
+    if (is_warning(event)) warnings.push_back(event.text);
+  if (!quiet) print_warnings(warnings);
   for (const std::string& notice : notices) {
     warn(notice);
     session.simulation->add_event("warning", notice);

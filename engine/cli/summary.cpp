@@ -1,5 +1,6 @@
 #include "engine/cli/summary.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +30,25 @@ ordered_json json_of_figure(const RunFigure::Value& value) {
           return v;
       },
       value);
+}
+
+std::string row_of(const PairFigures& pair) {
+  return fmt::format("{:.3g} % of {} contacts of {} and {}, {}{}{}", 100 * pair.fraction(), pair.contacts, pair.first,
+                     pair.second, pair.hybrid, pair.why.empty() ? "" : ": ", pair.why);
+}
+
+/// Of many pairs those of which voxels answered the most contacts.
+std::vector<std::string> rows_of_pairs(const RunFigures& run) {
+  constexpr std::size_t kMost = 8;
+  std::vector<PairFigures> pairs = run.pairs;
+  if (pairs.size() > kMost)
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const PairFigures& a, const PairFigures& b) { return a.by_voxels > b.by_voxels; });
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < std::min(kMost, pairs.size()); ++i) rows.push_back(row_of(pairs[i]));
+  if (pairs.size() > kMost)
+    rows.push_back(fmt::format("and {} more pairs: /events and --json have them all", pairs.size() - kMost));
+  return rows;
 }
 
 }  // namespace
@@ -64,6 +84,11 @@ RunFigures figures_of(const Session& session, LoopResult& loop, const std::strin
   s.realtime_priority = loop.realtime_priority;
   const Totals& totals = simulation.totals();
   s.collisions = totals.contacts;
+  s.by_voxels = totals.by_voxels;
+  s.exact_frames = totals.exact_frames;
+  s.exact_frames_by_voxels = totals.exact_frames_by_voxels;
+  for (const PairAnswers& of : simulation.answers())
+    s.pairs.push_back({of.first_name, of.second_name, std::string(of.method), of.contacts, of.by_voxels, of.why});
   s.cache_hits = totals.cache_hits;
   s.cache_misses = totals.cache_misses;
   s.null_misses = totals.null_misses;
@@ -82,11 +107,36 @@ RunFigures figures_of(const Session& session, LoopResult& loop, const std::strin
   return s;
 }
 
+std::string fallback_warning(const RunFigures& run) {
+  constexpr double kMost = 0.01;  // of the frames with contact
+  const double fraction = run.exact_frames > 0
+                              ? static_cast<double>(run.exact_frames_by_voxels) / static_cast<double>(run.exact_frames)
+                              : 0;
+  if (!(fraction > kMost)) return {};
+  const auto by_fewer = [](const PairFigures& a, const PairFigures& b) {
+    const auto of = [](const PairFigures& pair) { return pair.hybrid == "exact" ? pair.by_voxels : 0; };
+    return of(a) < of(b);
+  };
+  const auto worst = std::max_element(run.pairs.begin(), run.pairs.end(), by_fewer);
+  VERISIM_ASSERT(worst != run.pairs.end());
+  return fmt::format("hybrid = \"exact\" was asked for, and voxels answered in {:.3g} % of the frames with contact: {}",
+                     100 * fraction, worst->why);
+}
+
 std::string to_json(const RunFigures& run) {
   ordered_json j;
   for (const RunFigure& figure : run_figures()) j[figure.name] = json_of_figure(figure.value(run));
   j["constraints"] = ordered_json::object();
   for (const auto& [name, frames] : run.constraints) j["constraints"][name] = frames;
+  j["pairs"] = ordered_json::array();
+  for (const PairFigures& pair : run.pairs)
+    j["pairs"].push_back({{"first", pair.first},
+                          {"second", pair.second},
+                          {"hybrid", pair.hybrid},
+                          {"contacts", pair.contacts},
+                          {"by_voxels", pair.by_voxels},
+                          {"fraction", pair.fraction()},
+                          {"why", pair.why}});
   j["measures"] = ordered_json::object();
   for (const Measure& m : run.measures) j["measures"][m.name] = {{"value", m.value}, {"unit", m.unit}};
   return json_text(j);
@@ -108,6 +158,7 @@ std::string to_table(const RunFigures& run) {
   if (run.cache_hits + run.cache_misses > 0)
     row("look-ups", fmt::format("{} memoized, {} recognized ({} of them to no constraint)", run.cache_hits,
                                 run.cache_misses, run.null_misses));
+  for (const std::string& pair : rows_of_pairs(run)) row("by voxels", pair);
   row("overruns", fmt::format("{}{}", run.overruns, run.realtime_priority ? " (with real-time priority)" : ""));
   row("frame", times(run.frame_ns));
   if (run.collision_frames > 0) row("frame with contact", times(run.collision_frame_ns));

@@ -13,6 +13,9 @@ namespace verisim::cli {
 
 [[nodiscard]] const char* name_of(LoopEnd end);
 [[nodiscard]] RunFigures figures_of(const Session& session, LoopResult& loop, const std::string& run_file);
+/// That a run for which `exact` was asked was answered by voxels in more than 1 % of its frames with contact, and why;
+/// empty: it was not.
+[[nodiscard]] std::string fallback_warning(const RunFigures& run);
 [[nodiscard]] std::string to_json(const RunFigures& run);
 [[nodiscard]] std::string to_table(const RunFigures& run);
 [[nodiscard]] std::map<std::string, Attribute> to_attributes(const RunFigures& run);

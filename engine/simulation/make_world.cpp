@@ -84,6 +84,16 @@ void choose_integrator(const Scene& scene, World& world, std::vector<Event>& eve
                       "\"off\""});
 }
 
+/// Gravity pulls at what moves freely. Held bodies follow their device, as SPARTA's do: they have weight only where all
+/// bodies are dynamic.
+void check_gravity(const SimulationParameters& p, std::vector<Event>& events) {
+  if (p.gravity.isZero(0) || p.all_bodies_are_dynamic) return;
+  events.push_back({0, "gravity",
+                    fmt::format("gravity ({:g}, {:g}, {:g}) m/s^2 acts on no body, held ones neither: it does with "
+                                "allBodiesAreDynamic = true",
+                                p.gravity.x(), p.gravity.y(), p.gravity.z())});
+}
+
 Body place_body(const Scene& scene, const World& world, std::size_t index) {
   const BodyDescription& description = scene.bodies[index];
   const SimulationParameters& p = world.parameters;
@@ -100,6 +110,7 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.rigid.v_C = description.twist.linear;
   body.rigid.omega = description.twist.angular;
   body.voxel_size = description.voxel_size;
+  body.surface = known_surface(description);
   body.method = p.contact == ContactMethod::fcl ? hybrid::off : description.hybrid.value_or(p.hybrid);
   body.hybrid_enabled = description.hybrid_enabled;
   body.selectable = description.selectable && !description.fixed;
@@ -146,6 +157,7 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
               .companions = scene.companions,
               .clocks = Clocks(scene.parameters.timestep)};
   choose_integrator(scene, world, events);
+  check_gravity(world.parameters, events);
   check_names(scene);
   for (const auto& device : scene.devices) world.hands.emplace_back().device = device;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));

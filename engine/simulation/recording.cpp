@@ -176,9 +176,33 @@ void Recording::take_links(const World& world, const Stages& stages) {
   }
 }
 
+/// Who answered the contacts of each pair.
+void Recording::add_up_answers(const World& world, const Stages& stages) {
+  bool exact = false;  // a contact of a pair that was to be exact
+  bool exact_by_voxels = false;
+  for (const std::size_t l : recorded_links_) {
+    const std::uint32_t by_voxels = stages.contacts.count(l);
+    const std::uint32_t contacts = contacts_of(stages, l);
+    if (contacts == 0) continue;
+    const bool off = PairMethods::is_switched_off(world, l);
+    PairTotals& pair = pair_totals_[l];
+    pair.contacts += contacts;
+    pair.by_voxels += by_voxels;
+    ++pair.frames;
+    pair.switched_off_frames += off ? 1 : 0;
+    totals_.by_voxels += by_voxels;
+    if (off || !PairMethods::asked_of(world, l)->needs_precise_surfaces()) continue;
+    exact = true;
+    exact_by_voxels = exact_by_voxels || by_voxels > 0;
+  }
+  totals_.exact_frames += exact ? 1 : 0;
+  totals_.exact_frames_by_voxels += exact_by_voxels ? 1 : 0;
+}
+
 void Recording::add_up(const World& world, const Stages& stages, const FrameCost& cost) {
   totals_.collision_frames += cost.contacts > 0 ? 1 : 0;
   totals_.contacts += cost.contacts;
+  add_up_answers(world, stages);
   decltype(totals_.constraint_frames) active{};  // 0 or 1 per kind
   for (const std::size_t l : world.near_links) {
     if (depth_of(stages, l) > totals_.penetration_max) {

@@ -22,6 +22,7 @@ class Recording {
   void make_room(std::size_t links) {
     table_.reserve(links * columns_.table_bytes());
     recorded_links_.reserve(links);
+    pair_totals_.resize(links);
   }
 
   /// After a frame: row, sums, hash. Sets FrameCost::links. Error(diverged) with the column if a number is not finite;
@@ -33,11 +34,13 @@ class Recording {
   [[nodiscard]] std::span<const std::byte> table_rows() const { return table_; }
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
   [[nodiscard]] const Totals& totals() const { return totals_; }
+  [[nodiscard]] const PairTotals& totals_of(std::size_t link) const { return pair_totals_[link]; }
 
  private:
   void take_links(const World& world, const Stages& stages);
   void check_finite(const World& world) const;
   void add_up(const World& world, const Stages& stages, const FrameCost& cost);
+  void add_up_answers(const World& world, const Stages& stages);
 
   Columns columns_;
   FiniteNumbers state_numbers_, other_numbers_, table_numbers_;
@@ -46,6 +49,7 @@ class Recording {
   std::vector<std::size_t> recorded_links_;  ///< whose rows the table holds
   std::uint64_t hash_ = 0;
   Totals totals_;
+  std::vector<PairTotals> pair_totals_;  ///< by link
 };
 
 }  // namespace verisim

@@ -8,6 +8,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
 #include "engine/simulation/implementation.hpp"
+#include "engine/simulation/known_surface.hpp"
 #include "engine/simulation/world.hpp"
 
 namespace verisim {
@@ -56,6 +57,35 @@ std::size_t Simulation::prepare_all() {
   for (const auto& [first, second] : self.maker.pairs_that_can_meet(self.world))
     if (self.stages.neighbours.link_of(first, second) == kNone) self.add_link(first, second);
   return self.world.links.size();
+}
+
+std::vector<PairAnswers> Simulation::answers() const {
+  const Implementation& self = *implementation_;
+  std::vector<PairAnswers> answers;
+  for (const auto& [first, second] : self.met) {
+    const std::size_t l = self.stages.neighbours.link_of(first, second);
+    const Hybrid asked = PairMethods::asked_of(self.world, l);
+    const PairTotals& total = self.recording.totals_of(l);
+    if (!asked->needs_entities() || total.contacts == 0) continue;
+    const Body &a = self.world.bodies[first], &b = self.world.bodies[second];
+    PairAnswers of{first, second, a.name, b.name, asked->name(), total.contacts, total.by_voxels, {}};
+    if (of.by_voxels > 0) of.why = why_voxels(a, b, asked);
+    if (total.switched_off_frames > 0)
+      of.why += fmt::format("{}switched off in {} of {} frames with contact", of.why.empty() ? "" : "; ",
+                            total.switched_off_frames, total.frames);
+    answers.push_back(std::move(of));
+  }
+  return answers;
+}
+
+std::vector<Event> Simulation::last_events() const {
+  std::vector<Event> events;
+  for (const PairAnswers& of : answers())
+    events.push_back({time(), "voxels",
+                      fmt::format("voxels answered {} of {} contacts ({:.3g} %) of '{}' and '{}' under {}{}{}",
+                                  of.by_voxels, of.contacts, 100 * of.fraction(), of.first_name, of.second_name,
+                                  of.method, of.why.empty() ? "" : ": ", of.why)});
+  return events;
 }
 
 std::uint64_t Simulation::frame() const {

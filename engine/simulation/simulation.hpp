@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/pose.hpp"
@@ -28,6 +29,17 @@ inline constexpr std::array kStageNames = {"sources", "coupling", "query",  "res
                                            "render",  "clocks",   "record", "neighbours"};
 static_assert(kStageNames.size() == static_cast<std::size_t>(Stage::neighbours) + 1, "every stage has its name");
 using StageTimes = std::array<std::uint32_t, kStageNames.size()>;  ///< ns
+
+/// Who answered the contacts of a pair, summed over its frames (/state/links/contacts, by_voxels).
+struct PairAnswers {
+  std::size_t first = 0, second = 0;  ///< bodies
+  std::string first_name, second_name;
+  std::string_view method;  ///< asked for
+  std::uint64_t contacts = 0, by_voxels = 0;
+  std::string why;  ///< voxels answered some; empty: they did not
+
+  [[nodiscard]] double fraction() const { return static_cast<double>(by_voxels) / static_cast<double>(contacts); }
+};
 
 class Simulation {
  public:
@@ -95,6 +107,11 @@ class Simulation {
   [[nodiscard]] Energy energy() const;
 
   [[nodiscard]] const Totals& totals() const;
+  /// Of every pair that touched and for which a hybrid method was asked, in the order of first meetings: who answered
+  /// its contacts so far.
+  [[nodiscard]] std::vector<PairAnswers> answers() const;
+  /// The same as the events with which a record of the frames so far ends.
+  [[nodiscard]] std::vector<Event> last_events() const;
 
  private:
   struct Implementation;

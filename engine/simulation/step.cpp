@@ -56,6 +56,7 @@ void Simulation::step() {
   s.motion.advance(world, s.response, s.exact, s.passivity, s.energy.ledger());
   s.reactions.find(world, s.contacts, s.response, s.exact, s.motion);
   s.tunnelling.watch(world, notes);
+  s.sinking.watch(world, s.contacts, s.reactions, notes);
   s.pair_energy.watch(world, s.contacts, s.exact, s.reactions, s.motion, notes);
   timer.done(Stage::motion);
   render(world, s.response, s.motion);  // coupling wrench -> what the hardware is told to render

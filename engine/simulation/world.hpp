@@ -19,6 +19,7 @@
 #include "engine/exact/exact_body.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/simulation/clocks.hpp"
+#include "engine/simulation/known_surface.hpp"
 #include "engine/simulation/scene.hpp"
 #include "engine/voxel/voxmap.hpp"
 
@@ -35,6 +36,7 @@ struct Body {
   Coupling coupling;
   double voxel_size = 0;        ///< m
   Hybrid method = hybrid::off;  ///< asked for; which one acts on a pair: hybrid_method.hpp
+  KnownSurface surface;         ///< as its models have it
 
   // constant once it is made, which is when another body first comes near (BodyMaker)
   std::shared_ptr<const VoxelBody> voxels;        ///< null: not made yet

@@ -21,8 +21,9 @@ RunFigures distinct() {
   run.state_hash = "h";
   run.penetration_source = "p";
   std::uint64_t n = 100;
-  for (std::uint64_t* count : {&run.frames, &run.collision_frames, &run.overruns, &run.collisions, &run.cache_hits,
-                               &run.cache_misses, &run.null_misses})
+  for (std::uint64_t* count :
+       {&run.frames, &run.collision_frames, &run.overruns, &run.collisions, &run.cache_hits, &run.cache_misses,
+        &run.null_misses, &run.by_voxels, &run.exact_frames, &run.exact_frames_by_voxels})
     *count = n++;
   double x = 0.5;
   for (double* value : {&run.simulated_s, &run.wall_s, &run.load_s, &run.force_max, &run.penetration_max}) *value = ++x;
@@ -50,7 +51,7 @@ TEST(RunFigures, EachHasAValueOfItsOwn) {
     EXPECT_TRUE(values.insert(text_of(figure.value(run))).second) << figure.name;
     EXPECT_NE(std::string(figure.meaning), "") << figure.name;
   }
-  EXPECT_EQ(values.size(), 22U) << "21 fields and the real-time factor";
+  EXPECT_EQ(values.size(), 25U) << "24 fields and the real-time factor";
 }
 
 // The names are a promise to users (INTERFACES section 1); two that were swapped would pass the test above.
@@ -61,6 +62,9 @@ TEST(RunFigures, BelongToTheirNames) {
   EXPECT_EQ(said["cache_hits"], std::to_string(run.cache_hits));
   EXPECT_EQ(said["cache_misses"], std::to_string(run.cache_misses));
   EXPECT_EQ(said["null_misses"], std::to_string(run.null_misses));
+  EXPECT_EQ(said["by_voxels"], std::to_string(run.by_voxels));
+  EXPECT_EQ(said["exact_frames"], std::to_string(run.exact_frames));
+  EXPECT_EQ(said["exact_frames_by_voxels"], std::to_string(run.exact_frames_by_voxels));
   EXPECT_EQ(said["collision_frames"], std::to_string(run.collision_frames));
   EXPECT_EQ(said["collisions"], std::to_string(run.collisions));
   EXPECT_EQ(said["frames"], std::to_string(run.frames));

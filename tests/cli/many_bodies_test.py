@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy
 
-from program import SMALL, VERISIM, ProgramTest, dense
+from program import SMALL, VERISIM, ProgramTest, dense, turned_stl
 
 GRID = """
 local p = params{ bodies = 48, moving = 48, pitch = 0.03, spin = 0, duration = 0.02 }
@@ -124,7 +124,8 @@ class FormatOne(ProgramTest):
             events, attributes = f["events"][()], dict(f["events"].attrs)
             for name in ("events", "state/links", "state/pairs", "cost/links", "cost/pairs_met"):
                 del f[name]
-            f.create_dataset("events", data=events[events["kind"] != b"near"]).attrs.update(attributes)
+            later = [e["kind"] in (b"near", b"voxels") or b"have no b-rep" in e["text"] for e in events]
+            f.create_dataset("events", data=events[~numpy.array(later)]).attrs.update(attributes)
             columns = []  # the state first, then its hash, then all else
             f.visititems(lambda name, item: columns.append((not name.startswith("state"), name == "state/hash", name))
                          if "order" in item.attrs and not name.startswith("inputs") else None)
@@ -146,6 +147,23 @@ class FormatOne(ProgramTest):
             f[f"state/link/{name}/wrench"][-1, 2] += 1
         self.refuse(1, ["/state/links/wrench of plate~box[2]", f"frame {summary['frames'] - 1}"], "replay", run_file,
                     "--verify")
+
+    def test_told_of_pairs_of_which_one_body_has_no_b_rep_and_of_no_others(self):
+        self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))
+        script = """
+            addObject{ name = "bush", fixed = true, voxelsize = mm(1), Model{ "bush.stl", scale = 0.001 } }
+            local rod = addObject{ name = "rod", voxelsize = mm(1), position = {0, 0, 0.02}, brep = BREP,
+                                   Solid.cylinder{radius = 0.0098, height = 0.06} }
+            local hand = Devices.Hand{ name = "hand", path = { {position = {0.0005, 0, 0.02}, dwell = 0.1} } }
+            addDevice(hand)
+            grasp(hand, rod)"""
+        for brep, told in (("true", 1), ("false", 0)):
+            run_file = self.path(brep + ".h5")
+            self.run_json("run", self.write("it.lua", script.replace("BREP", brep)), "-o", run_file)
+            self.as_format_1(run_file)
+            with h5py.File(run_file) as f:
+                self.assertEqual([e["kind"] for e in f["events"]].count(b"hybrid"), told)
+            self.succeed("replay", run_file, "--verify")
 
 
 if __name__ == "__main__":

@@ -222,9 +222,6 @@ TEST(Hybrid, SaysNothingWhereItIsNotAskedForOrEverythingIsKnown) {
   Scene off = standing_pin(hybrid::off);
   off.bodies[kPin].use_brep = false;
   EXPECT_EQ(hybrid_events(off), std::vector<std::string>{});
-  Scene no_breps = standing_pin();
-  for (BodyDescription& body : no_breps.bodies) body.use_brep = false;
-  EXPECT_EQ(hybrid_events(no_breps), std::vector<std::string>{}) << "a scene of meshes";
 }
 
 // Freeform faces count as `other`: no recognizer takes them, and the voxels' answer stands, bit for bit.

@@ -9,7 +9,7 @@ namespace verisim {
 namespace {
 
 bool all_faces_known(const Body& body) {
-  return body.exact->precise_face_count == body.exact->faces.size();
+  return body.surface.is_whole() && body.exact->precise_face_count == body.exact->faces.size();
 }
 
 /// Set by set: is there a precise surface for every face in it, and at least one face?

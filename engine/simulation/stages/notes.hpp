@@ -21,11 +21,11 @@ struct Note {
 
 class Notes {
  public:
-  /// Between frames. What a frame may have to say: two things of every body, one of every link, both ends of a grasp of
-  /// every hand and of the hand that it takes from, and what found no room.
+  /// Between frames. What a frame may have to say: three things of every body, one of every link, both ends of a grasp
+  /// of every hand and of the hand that it takes from, and what found no room.
   void make_room(const World& world, std::size_t links) {
     constexpr std::size_t kOthers = 64;
-    notes_.reserve(2 * world.bodies.size() + links + 4 * world.hands.size() + kOthers);
+    notes_.reserve(3 * world.bodies.size() + links + 4 * world.hands.size() + kOthers);
   }
   /// No allocation within that room.
   void add(const Note& note) {

@@ -1,6 +1,7 @@
 #include "engine/simulation/stages/pair_methods.hpp"
 
 #include "engine/base/error.hpp"
+#include "engine/simulation/known_surface.hpp"
 
 namespace verisim {
 
@@ -14,21 +15,34 @@ void PairMethods::add_link(const World& world, const Contacts& contacts, std::si
   acting_.push_back(nullptr);
 }
 
+Hybrid PairMethods::asked_of(const World& world, std::size_t l) {
+  return lesser(world.bodies[world.links[l].first].method, world.bodies[world.links[l].second].method);
+}
+
 void PairMethods::tell(const World& world, std::size_t l, std::vector<Event>& events) {
   const Body& first = world.bodies[world.links[l].first];
   const Body& second = world.bodies[world.links[l].second];
-  const bool both_or_none = static_cast<bool>(first.entities) == static_cast<bool>(second.entities);
-  if (!lesser(first.method, second.method)->needs_entities() || both_or_none) return;
-  events.push_back({world.time(), "hybrid",
-                    fmt::format("'{}' has no b-rep: its contacts with '{}' stay with the voxels",
-                                (first.entities ? second : first).name, (first.entities ? first : second).name)});
+  const Hybrid asked = asked_of(world, l);
+  if (!asked->needs_entities()) return;
+  const auto say = [&](const std::string& text) { events.push_back({world.time(), "hybrid", text}); };
+  if (!first.entities && !second.entities) {
+    say(fmt::format("'{}' and '{}' have no b-rep: their contacts stay with the voxels", first.name, second.name));
+  } else if (!first.entities || !second.entities) {
+    say(fmt::format("'{}' has no b-rep: its contacts with '{}' stay with the voxels",
+                    (first.entities ? second : first).name, (first.entities ? first : second).name));
+  } else if (const std::string gaps = gaps_of(first, second, asked); !gaps.empty()) {
+    say(fmt::format("{}: contacts of '{}' and '{}' there stay with the voxels", gaps, first.name, second.name));
+  }
+}
+
+bool PairMethods::is_switched_off(const World& world, std::size_t l) {
+  const Link& link = world.links[l];
+  return !world.bodies[link.first].hybrid_enabled || !world.bodies[link.second].hybrid_enabled;
 }
 
 void PairMethods::choose(const World& world) {
   for (const std::size_t l : world.near_links) {
-    const auto [first, second, number] = world.links[l];
-    const bool enabled = world.bodies[first].hybrid_enabled && world.bodies[second].hybrid_enabled;
-    acting_[l] = enabled ? methods_[l].get() : nullptr;
+    acting_[l] = is_switched_off(world, l) ? nullptr : methods_[l].get();
     if (acting_[l] != nullptr) acting_[l]->begin_frame();
   }
 }

@@ -14,12 +14,16 @@ class PairMethods {
  public:
   /// Between frames: makes the pair's.
   void add_link(const World& world, const Contacts& contacts, std::size_t link);
-  /// Adds to `events` if a method was asked for and cannot act on the pair.
+  /// Of the pair, whether it can act or not.
+  [[nodiscard]] static Hybrid asked_of(const World& world, std::size_t link);
+  /// Adds to `events` if a method was asked for and cannot act on the pair, or not everywhere.
   static void tell(const World& world, std::size_t link, std::vector<Event>& events);
 
   /// Which of them act in this frame.
   void choose(const World& world);
   /// Null: the voxels' penalty alone.
+  /// Has a script switched off the method of one of the two?
+  [[nodiscard]] static bool is_switched_off(const World& world, std::size_t link);
   [[nodiscard]] PairMethod* acting(std::size_t link) const { return acting_[link]; }
   [[nodiscard]] LookUps look_ups(std::size_t link) const {
     return acting_[link] != nullptr ? acting_[link]->look_ups() : LookUps{};

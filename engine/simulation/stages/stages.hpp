@@ -13,6 +13,7 @@
 #include "engine/simulation/stages/passivity.hpp"
 #include "engine/simulation/stages/reactions.hpp"
 #include "engine/simulation/stages/response.hpp"
+#include "engine/simulation/stages/sinking.hpp"
 #include "engine/simulation/stages/tunnelling.hpp"
 
 namespace verisim {
@@ -28,6 +29,7 @@ struct Stages {
         motion(world),
         reactions(world),
         tunnelling(world),
+        sinking(world),
         neighbours(world) {}
 
   /// Between frames: what each keeps of a link. @pre its bodies are made
@@ -52,6 +54,7 @@ struct Stages {
   Motion motion;
   Reactions reactions;
   Tunnelling tunnelling;
+  Sinking sinking;
   PairEnergy pair_energy;
   Neighbours neighbours;
 };
