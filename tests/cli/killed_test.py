@@ -13,7 +13,8 @@ import h5py
 
 from program import ProgramTest, SMALL, VERISIM
 
-MOMENTS = int(os.environ.get("VERISIM_KILLS", "50"))  # of each kind, paced and free-running
+# Of each kind, paced and free-running; the sanitizers' program is ten times slower.
+MOMENTS = int(os.environ.get("VERISIM_KILLS", "50" if os.environ["VERISIM_SANITIZE"] == "" else "10"))
 
 
 class Killed(ProgramTest):
