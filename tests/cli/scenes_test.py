@@ -124,7 +124,7 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "05e0153324fe4394"),
+    ("peg_in_hole", ["--duration", "3"], "c902486094aef22f"),
     ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "b8a2c45b30d0f817"),
     ("peg_in_hole_step", ["--duration", "3"], "a3d9e83d73623060"),
     ("head_tracking", [], "7be82201c4e57cc3"),
