@@ -41,7 +41,7 @@ const std::map<std::string, Golden> kGolden = {
     {"pin_in_hole", {"3d4c1197802d8b98", 735}},        {"pin_in_hole_implicit", {"d06df72cc837ba9b", 729}},
     {"pin_restored", {"d5296583612e225e", 737, 737}},  {"pin_restored_implicit", {"16fb6d8bde7578c7", 735, 735}},
     {"pin_blended", {"8aed274cfdd7c73e", 1045, 1045}}, {"pin_exact", {"5180500c61900e46", 283}},
-    {"cone_exact", {"18e5a7fe8174c276", 91}},          {"two_pins_exact", {"872e69ea6bd1fc22", 247}},
+    {"cone_exact", {"a11e063badcc48da", 91}},          {"two_pins_exact", {"872e69ea6bd1fc22", 247}},
     {"falling_boxes", {"ea5e53e4136c1cbc", 440}},      {"falling_boxes_implicit", {"6ce9a09b73d7c745", 440}},
 };
 
