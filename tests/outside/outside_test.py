@@ -60,7 +60,7 @@ class OutsideTest(unittest.TestCase):
         energy = ruler.cylinder_energy(pose, twist, CYLINDER_MASS)
         gain = (energy - np.minimum.accumulate(energy)).max()
         self.assertLessEqual(overlap, 20e-6)
-        # Wanted: 1e-3. 23 of the 24 drops keep it at 2 mm; the eighth, which turns at 31 rad/s on an edge, gains 1.4e-3.
+        # Wanted: 1e-3. 23 of the 24 drops keep it; seed 8, which turns at 31 rad/s on an edge, gains 1.4e-3.
         self.assertLessEqual(gain, 2e-3 * (energy[0] - energy.min()))
 
     def test_the_rim_of_a_lying_cylinder_does_not_sink_into_the_grooves_edge(self):
