@@ -55,6 +55,18 @@ struct BodyPair {
   [[nodiscard]] Vector3d moved(const Vector3d& p, const Twist& twist) const {
     return motion.dt * (twist.linear + twist.angular.cross(p));
   }
+  /// How far a contact's normal lies in the mover's normal cone at a sample: 1 inside of it, 0 from cone_none on.
+  [[nodiscard]] double normal_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
+    return normal_cone_weight_in_mover(sample, motion.R.transpose() * normal);
+  }
+  /// @param n  the normal in the mover's coordinates
+  [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n) const {
+    double outside = 0;  // sine of the angle out of the normal cone
+    for (std::uint32_t i = mover.cone_begin[sample]; i < mover.cone_begin[sample + 1]; ++i)
+      outside = std::max(outside, -n.dot(mover.cone_directions[i]));
+    const SearchThresholds& fade = motion.thresholds;
+    return std::clamp((fade.cone_none - outside) / (fade.cone_none - fade.cone_full), 0.0, 1.0);
+  }
   /// Calls f(i, measure of sample i) for every sample of the block.
   template <typename F>
   void measure_all(const CurveFromSurface& curve, const SampleBlock& block, F&& f) const {

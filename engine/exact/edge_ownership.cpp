@@ -109,6 +109,32 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
   return c.gap > -pair.base.options.spacing && is_outermost(pair, c, face, other) && is_outermost(pair, c, other, face);
 }
 
+/// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies: then the
+/// neighbouring segment has a better place for it, or an edge of the base that the curve crosses there.
+bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
+  const double width = 2 * placed.feature->half_width;
+  if (std::abs(c.place.t) < placed.feature->half_width) return false;
+  return std::abs(c.at.normal.dot(placed.tangent(c.place))) * width > pair.motion.thresholds.coincident;
+}
+
+/// What a face keeps of a place that the face across a convex edge owns: from 0, nothing, to 1. The face across can
+/// push only along normals of the mover's normal cone; where its own is outside of that cone, and so is that of edge
+/// against edge, nothing would push at all, and the place stays with this face.
+double kept_share(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
+                  const SurfaceAt& there, const Candidate& c) {
+  double least = compared_distances(pair, c.p, c.at, there).other;
+  // At the end of a step that stopped it a place may lie on the edge to rounding, and go on in the next.
+  if (c.at.distance > -pair.motion.thresholds.coincident)
+    least = std::min(least, there.distance + there.normal.dot(pair.moved(c.p, pair.motion.last_twist)));
+  const double depth = -least;
+  const double taken = pair.normal_cone_weight(c.sample, there.normal);
+  if (taken >= 1 || depth <= pair.motion.thresholds.coincident || falls_beyond_segment(pair, placed, c)) return 0;
+  Candidate crossed = c;
+  const double by_edge =
+      cross_edge(pair, placed, face, other, crossed) ? pair.normal_cone_weight(crossed.sample, crossed.normal) : 0;
+  return 1 - std::max(taken, by_edge);
+}
+
 }  // namespace
 
 OwnershipRule ownership_rule(double a, double b, double coincident) {
@@ -121,7 +147,8 @@ std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face) {
   return edge.faces[0] == face ? edge.faces[1] : edge.faces[0];
 }
 
-bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool wins_tie) {
+ComparedDistances compared_distances(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine,
+                                     const SurfaceAt& other) {
   double a = mine.distance;
   double b = other.distance;
   const OwnershipRule rule = ownership_rule(a, b, pair.motion.thresholds.coincident);
@@ -131,7 +158,12 @@ bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, 
     a += mine.normal.dot(step);
     b += other.normal.dot(step);
   }
-  return a > b || (a == b && wins_tie);
+  return {a, b};
+}
+
+bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool wins_tie) {
+  const ComparedDistances at = compared_distances(pair, p, mine, other);
+  return at.mine > at.other || (at.mine == at.other && wins_tie);
 }
 
 bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, Candidate& c) {
@@ -162,7 +194,9 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
       continue;
     }
     if (owns_point(pair, c.p, c.at, there, face < other)) continue;
-    return face < other && cross_edge(pair, placed, face, other, c);
+    const double kept = kept_share(pair, placed, face, other, there, c);
+    if (!(kept > 0)) return face < other && cross_edge(pair, placed, face, other, c);
+    c.weight *= kept;
   }
   return true;
 }

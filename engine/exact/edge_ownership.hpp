@@ -22,6 +22,13 @@ enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_m
 /// The other face of an edge of `face`. @pre the edge is one of its (not asserted: it is asked in the search's loops)
 [[nodiscard]] std::uint32_t face_across(const ExactEdge& edge, std::uint32_t face);
 
+/// The distances of a point from two faces as its rule compares them [m].
+struct ComparedDistances {
+  double mine, other;
+};
+[[nodiscard]] ComparedDistances compared_distances(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine,
+                                                   const SurfaceAt& other);
+
 /// True if `mine` owns the point p against `other`, its neighbour across a convex edge of the base.
 /// @param mine, other  distance and normal of the two faces at p
 /// @param wins_tie     the answer where both are equally far

@@ -10,6 +10,9 @@
 //                   larger distance owns the place. If the sample's segment crosses from one face to the other, the
 //                   row is that of edge against edge, with the normal perpendicular to both. At a concave edge each
 //                   face has its row, so the smaller distance counts.
+//                   A face owns only what it can push: where its normal, and that of edge against edge, is outside of
+//                   the mover's normal cone, the place stays with the face across. So a rim that lies on an edge, or
+//                   comes down on it, is held by the one face that can hold it.
 //   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
 //                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
 //                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.

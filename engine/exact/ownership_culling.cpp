@@ -13,6 +13,7 @@ namespace {
 struct DistanceLead {
   PerSample now;      ///< m, at the start of the step
   PerSample by_rule;  ///< m, as the sample's rule compares them
+  PerSample other;    ///< m, the distance to the face across, the least that is expected of it
   std::array<OwnershipRule, kBlockSize> rule;
 };
 
@@ -49,6 +50,9 @@ DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const A
     lead.now[i] = m.distance - distances.distance[i];
     lead.rule[i] = ownership_rule(distances.distance[i], m.distance, motion.thresholds.coincident);
     lead.by_rule[i] = lead.now[i] + (lead.rule[i] == OwnershipRule::by_last_motion ? m.change : 0);
+    const bool on_edge = distances.distance[i] > -motion.thresholds.coincident;
+    const bool moves = on_edge || lead.rule[i] == OwnershipRule::by_last_motion;
+    lead.other[i] = m.distance + (moves ? std::min(0.0, m.change) : 0.0);
     some_before = some_before || lead.rule[i] == OwnershipRule::by_last_motion;
     some_free = some_free || lead.rule[i] == OwnershipRule::by_free_motion;
   });
@@ -59,7 +63,9 @@ DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const A
   }
   if (some_free) {
     pair.measure_all(pair.seen_from(other, placed, motion.free_twist), block, [&](std::uint32_t i, const Measure& m) {
-      if (lead.rule[i] == OwnershipRule::by_free_motion) lead.by_rule[i] += m.change - distances.change[i];
+      if (lead.rule[i] != OwnershipRule::by_free_motion) return;
+      lead.by_rule[i] += m.change - distances.change[i];
+      lead.other[i] = std::min(lead.other[i], lead.now[i] + distances.distance[i] + m.change);
     });
   }
   return lead;
@@ -97,11 +103,16 @@ void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, con
     return gaps_ahead[i] == kOutOfReach ||
            is_limited_by(pair, *edge, face, place(i), distances.distance[i] + lead.now[i]);
   };
+  const AnalyticSurface& across = *faces[face_across(*edge, face)].surface;
+  const auto can_be_pushed = [&](std::uint32_t i) {
+    return gaps_ahead[i] == kOutOfReach || lead.other[i] >= -pair.motion.thresholds.coincident ||
+           pair.normal_cone_weight(block.begin + i, across.at(place(i)).normal) >= 1;
+  };
   const std::uint32_t group = placed.feature->group;
   for (std::uint32_t begin = first / group * group; begin < count; begin += group) {
     const std::uint32_t end = std::min(begin + group, count);
     bool is_unowned = is_limited(begin) && is_limited(end - 1);
-    for (std::uint32_t i = begin; is_unowned && i < end; ++i) is_unowned = is_led(i);
+    for (std::uint32_t i = begin; is_unowned && i < end; ++i) is_unowned = is_led(i) && can_be_pushed(i);
     if (is_unowned) std::fill(gaps_ahead.begin() + begin, gaps_ahead.begin() + end, kOutOfReach);
   }
 }

@@ -18,8 +18,6 @@ class Search {
   void reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                     std::span<double> remaining, std::uint32_t face);
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
-  [[nodiscard]] double normal_cone_weight(std::uint32_t sample, const Vector3d& normal) const;
-  [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n) const;
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
                                         Candidate& c);
@@ -145,7 +143,7 @@ bool Search::evaluate_candidate(const PlacedFeature& placed, std::uint32_t face,
   c.normal = c.at.normal;
   if (!accept_candidate(pair_, placed, face, c) || c.gap >= motion.margin) return false;
   c.gap_ahead = c.gap + c.normal.dot(pair_.moved(c.p, motion.free_twist));
-  c.weight *= touching_fraction(placed, c, count) * normal_cone_weight(c.sample, c.normal);
+  c.weight *= touching_fraction(placed, c, count) * pair_.normal_cone_weight(c.sample, c.normal);
   return true;
 }
 
@@ -187,24 +185,11 @@ double Search::touching_fraction(const PlacedFeature& placed, const Candidate& c
   return rise > overlap ? overlap / rise : 1;
 }
 
-double Search::normal_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
-  return normal_cone_weight_in_mover(sample, pair_.motion.R.transpose() * normal);
-}
-
-/// @param n  the normal in the mover's coordinates
-double Search::normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n) const {
-  double outside = 0;  // sine of the angle out of the normal cone
-  for (std::uint32_t i = pair_.mover.cone_begin[sample]; i < pair_.mover.cone_begin[sample + 1]; ++i)
-    outside = std::max(outside, -n.dot(pair_.mover.cone_directions[i]));
-  const SearchThresholds& fade = pair_.motion.thresholds;
-  return std::clamp((fade.cone_none - outside) / (fade.cone_none - fade.cone_full), 0.0, 1.0);
-}
-
 /// Back-face culling: true if a plane's normal is outside of the normal cone of every sample of a block.
 bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) const {
   const Vector3d n = pair_.motion.R.transpose() * normal;
   for (std::uint32_t i = block.begin; i < block.end; ++i)
-    if (normal_cone_weight_in_mover(i, n) > 0) return false;
+    if (pair_.normal_cone_weight_in_mover(i, n) > 0) return false;
   return true;
 }
 
