@@ -15,7 +15,7 @@ sys.path.insert(0, os.path.join(hostile.SOURCE, "tests", "cli"))
 from program import SMALL, turned_stl  # noqa: E402
 from traces import as_csv  # noqa: E402
 
-SECONDS = 30
+SECONDS = 60
 PATIENCE = 3  # s, before Ctrl-C
 COMMANDS = [[], ["run"], ["run"], ["run"], ["replay"], ["recover"], ["inspect"], ["trace"], ["trace", "info"], ["trace", "convert"],
             ["trace", "synth"], ["wii"], ["wii", "validate"], ["wii", "place"], ["wii", "track"], ["wii", "serve"],
