@@ -1,4 +1,4 @@
-// Runs the core scenes and prints one line each: built by two compilers at three levels, all must print the same.
+// Runs the core scenes and prints one line each: built by two compilers at several levels, all must print the same.
 #include <cstdio>
 
 #include "engine/base/hash.hpp"
