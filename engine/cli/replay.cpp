@@ -79,13 +79,18 @@ void tell(const Replay& asked, const RunFile& file, const std::string& hash, con
   }
 }
 
+void say_if_left_open(const RunFile& file, const std::string& path) {
+  if (!file.recovered()) return;
+  std::fprintf(stderr, "notice: %s was left open by a killed run and %s\n", path.c_str(),
+               file.closed_in_place() ? "has been closed" : "stays so: its folder cannot be written");
+}
+
 int replay(const Replay& asked, const SimulateOptions& o) {
-  const auto& [path, verify, measure] = asked;
+  const std::string& path = asked.path;
+  const bool verify = asked.verify;
   use_simd_target(o.simd);
   const RunFile file(path);
-  if (file.recovered())
-    std::fprintf(stderr, "notice: %s was left open by a killed run and %s\n", path.c_str(),
-                 file.closed_in_place() ? "has been closed" : "stays so: its folder cannot be written");
+  say_if_left_open(file, path);
   say_if_from_elsewhere(file);
   const bool is_format_1 = file.format_version() < 2;
   const auto differs = [&](const std::string& difference) {
@@ -101,7 +106,7 @@ int replay(const Replay& asked, const SimulateOptions& o) {
   auto inputs = std::make_unique<Inputs>(Inputs::stored(file.header().files, file.header().models));
   std::vector<MeasuredBody> bodies;
   Session session = open_session(options, std::move(inputs), o.threads, true, [&](const Scene& scene) {
-    if (measure) bodies = measured_bodies(scene);
+    if (asked.measure) bodies = measured_bodies(scene);
   });
   Simulation& simulation = *session.simulation;
 
@@ -136,7 +141,7 @@ int replay(const Replay& asked, const SimulateOptions& o) {
     differs(difference_in_summary(file, session));
     if (!altered.empty()) differs(altered.front());
   }
-  tell(asked, file, hash, measure ? measure_run(file, bodies) : std::vector<MeasuredPair>(), o);
+  tell(asked, file, hash, asked.measure ? measure_run(file, bodies) : std::vector<MeasuredPair>(), o);
   return 0;
 }
 
@@ -160,8 +165,8 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "One JSON object on stdout");
   command->add_flag("--quiet", options->quiet, "Say nothing");
   command->footer(
-      "Examples: verisim replay runs/peg_in_hole.h5 --verify\n"
-      "          verisim replay runs/peg_in_hole.h5 --verify --measure");
+      "Example: verisim replay runs/peg_in_hole.h5 --verify\n"
+      "         verisim replay runs/peg_in_hole.h5 --verify --measure");
   command->callback([=, &exit_code] { exit_code = replay(*asked, *options); });
 }
 
