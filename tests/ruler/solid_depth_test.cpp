@@ -107,8 +107,9 @@ TEST(SolidDepth, IsTheSameElsewhereAndTheOtherWayRound) {
       "sphere(0.01)",          "cylinder(0.01,0.03)",    "box(0.02,0.03,0.01)",
       "cone(0.002,0.01,0.02)", "tube(0.012,0.008,0.02)", "difference(box(0.04,0.04,0.02),cylinder(0.006,0.03))"};
   const RandomStream random(1, "elsewhere");
-  int deep = 0;
-  for (std::uint64_t i = 0; i < test::by_length(10U, 60U, 60U); ++i) {
+  std::uint64_t deep = 0;
+  const auto count = test::by_length<std::uint64_t>(10, 60, 60);
+  for (std::uint64_t i = 0; i < count; ++i) {
     SCOPED_TRACE(i);
     const std::string& a = solids[i % solids.size()];
     const std::string& b = solids[(i / solids.size()) % solids.size()];
@@ -118,13 +119,13 @@ TEST(SolidDepth, IsTheSameElsewhereAndTheOtherWayRound) {
     const ruler::Accuracy accuracy{.absolute = 1e-6, .relative = 0.01, .pieces_max = 4000};
     const Overlap here = of(a, X_WA, b, X_WB, accuracy), there = of(a, X * X_WA, b, X * X_WB, accuracy),
                   swapped = of(b, X_WB, a, X_WA, accuracy);
-    deep += here.depth > 1e-4;
+    deep += here.depth > 1e-4 ? 1 : 0;
     for (const Overlap& other : {there, swapped}) {
       EXPECT_LE(here.depth, other.depth + other.bound + 1e-12);
       EXPECT_LE(other.depth, here.depth + here.bound + 1e-12);
     }
   }
-  EXPECT_GT(deep, 20) << "hardly any of the placements overlapped";
+  EXPECT_GT(deep, count / 3) << "hardly any of the placements overlapped";
 }
 
 TEST(SolidText, ThatIsNotOneIsRefused) {

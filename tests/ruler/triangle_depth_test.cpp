@@ -76,8 +76,9 @@ TEST(TriangleDepth, AndSolidDepthAgreeWithDenselySampledTriangles) {
   constexpr double kSpacing = 5e-4, kChord = 4e-4;
   const ruler::Accuracy accuracy{.absolute = 1e-5, .relative = 0.01, .pieces_max = 4000};
   const RandomStream random(1, "against CGAL");
-  int deep = 0;
-  for (std::uint64_t i = 0; i < test::by_length(8U, 50U, 50U); ++i) {
+  std::uint64_t deep = 0;
+  const auto count = test::by_length<std::uint64_t>(8, 50, 50);
+  for (std::uint64_t i = 0; i < count; ++i) {
     SCOPED_TRACE(i);
     const std::size_t a = i % solids.size(), b = (i / solids.size()) % solids.size();
     const Pose X_BA = ruler::test::random_pose(random, 100 * i, 0.015);
@@ -91,9 +92,9 @@ TEST(TriangleDepth, AndSolidDepthAgreeWithDenselySampledTriangles) {
         ruler::depth_in(ruler::Csg(solids[a]->text()).placed(X_BA), ruler::Csg(solids[b]->text()), accuracy);
     EXPECT_LE(exact.depth, sampled + kSpacing + kChord);
     EXPECT_GE(exact.depth + exact.bound, sampled - kChord);
-    deep += sampled > 1e-3;
+    deep += sampled > 1e-3 ? 1 : 0;
   }
-  EXPECT_GT(deep, 15) << "hardly any of the placements overlapped";
+  EXPECT_GT(deep, 3 * count / 10) << "hardly any of the placements overlapped";
 }
 
 }  // namespace
