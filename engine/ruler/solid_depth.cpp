@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <queue>
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/ruler/best_first.hpp"
 #include "engine/ruler/patch.hpp"
 #include "engine/ruler/point_depth.hpp"
 #include "engine/ruler/polygon.hpp"
@@ -17,7 +17,7 @@ namespace {
 class Search {
  public:
   Search(const Csg& a, const Csg& b, const Accuracy& accuracy)
-      : a_(a), b_(b), accuracy_(accuracy), values_a_(a), values_b_(b), point_depth_(b) {}
+      : a_(a), b_(b), search_(accuracy), values_a_(a), values_b_(b), point_depth_(b) {}
 
   Depth run() {
     for (std::uint32_t i = 0; i < a_.faces().size(); ++i) {
@@ -30,32 +30,23 @@ class Search {
                   kInfinity,
                   0};
       look(piece);
-      add(piece);
+      search_.add(piece);
     }
-    while (!waiting_.empty() && waiting_.top().limit > enough() && found_.pieces < accuracy_.pieces_max) {
-      const Piece piece = waiting_.top();
-      waiting_.pop();
-      split(piece);
-    }
-    if (!waiting_.empty()) dropped_ = std::max(dropped_, waiting_.top().limit);
-    found_.bound = std::max(0.0, dropped_ - found_.depth);
-    return found_;
+    return search_.run([&](const Piece& piece) { split(piece); });
   }
 
  private:
-  double enough() const { return found_.depth + std::max(accuracy_.absolute, accuracy_.relative * found_.depth); }
-
   /// The longer way, unless the other one, tried, leaves clearly less to search.
   void split(const Piece& piece) {
     const Patch patch = patch_of(a_, piece);
     const auto by_u = halves(piece, true), by_v = halves(piece, false);
     const auto gain = [&](const std::array<Piece, 2>& pair) {
-      return 2 * piece.limit - std::max(pair[0].limit, enough()) - std::max(pair[1].limit, enough());
+      return 2 * piece.limit - std::max(pair[0].limit, search_.enough()) - std::max(pair[1].limit, search_.enough());
     };
-    const double gain_u = gain(by_u), gain_v = gain(by_v), clear = 0.2 * (piece.limit - enough());
+    const double gain_u = gain(by_u), gain_v = gain(by_v), clear = 0.2 * (piece.limit - search_.enough());
     const bool is_longer_u = patch.a.squaredNorm() >= patch.b.squaredNorm();
     const bool split_u = is_longer_u ? !(gain_v > clear && gain_v > 2 * gain_u) : gain_u > clear && gain_u > 2 * gain_v;
-    for (const Piece& half : split_u ? by_u : by_v) add(half);
+    for (const Piece& half : split_u ? by_u : by_v) search_.add(half);
   }
   std::array<Piece, 2> halves(const Piece& piece, bool of_u) {
     std::array<Piece, 2> both = {piece, piece};
@@ -69,14 +60,8 @@ class Search {
   }
 
   void look(Piece& piece) {
-    piece.number = ++found_.pieces;
+    piece.number = search_.next_number();
     piece.limit = std::min(piece.limit, limit_of(piece));
-  }
-  void add(const Piece& piece) {
-    if (piece.limit > enough())
-      waiting_.push(piece);
-    else
-      dropped_ = std::max(dropped_, piece.limit);
   }
 
   /// No point of the piece that belongs to A's surface is deeper in B. Looks at a point or two of it, too.
@@ -98,7 +83,7 @@ class Search {
     if (least_tree(patch, radius, proven) > 0) return 0;
     double limit = tree_b > 0 ? radius - tree_b : kInfinity;
     limit = std::min(limit, limit_by_faces(patch, radius, proven));
-    if (limit > enough() && !likely.is_empty()) look_at(own, patch, likely);
+    if (limit > search_.enough() && !likely.is_empty()) look_at(own, patch, likely);
     return limit;
   }
 
@@ -180,7 +165,7 @@ class Search {
         limit = std::min(limit, limit_by_edge(uncertain_[i], uncertain_[j], patch, radius, proven));
     std::sort(depths_.begin(), depths_.end(), [](const Linear& f, const Linear& g) { return f.at < g.at; });
     const std::size_t n = std::min<std::size_t>(depths_.size(), 3);
-    for (std::size_t i = 0; i < n && limit > enough(); ++i)
+    for (std::size_t i = 0; i < n && limit > search_.enough(); ++i)
       for (std::size_t j = i + 1; j < n; ++j)
         limit = std::min(limit, largest_of_lesser(depths_[i], depths_[j], proven));
     return limit;
@@ -251,11 +236,7 @@ class Search {
     values_a_.at(x);
     if (!(std::abs(values_a_[own]) <= kOnSurface)) return;
     if (away_from_surface(own) > kOnSurface) return;
-    const double depth = point_depth_(x);
-    if (depth > found_.depth) {
-      found_.depth = depth;
-      found_.place = x;
-    }
+    search_.found(point_depth_(x), x);
   }
 
   /// On the patch's own surface, and on those that cut it and which x has crossed.
@@ -277,17 +258,14 @@ class Search {
 
   const Csg& a_;
   const Csg& b_;
-  const Accuracy& accuracy_;
+  BestFirst<Piece> search_;
   Values values_a_, values_b_;
   PointDepth point_depth_;
-  std::priority_queue<Piece> waiting_;
   std::vector<std::uint32_t> cutting_;
   std::vector<double> low_, high_;  ///< of b's dividers on a patch
   static constexpr std::size_t kUncertainMax = 6;
   std::vector<Linear> depths_;            ///< bounds of the last patch's depth
   std::vector<std::uint32_t> uncertain_;  ///< dividers of b near it that may not be b's surface there
-  Depth found_;
-  double dropped_ = 0;
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <queue>
 #include <utility>
 
 #include "engine/base/error.hpp"
@@ -64,7 +63,7 @@ struct TrianglePiece {
 
 class TriangleSearch {
  public:
-  TriangleSearch(const Triangles& b, const Accuracy& accuracy) : b_(b), accuracy_(accuracy) {}
+  TriangleSearch(const Triangles& b, const Accuracy& accuracy) : b_(b), search_(accuracy) {}
 
   Depth run(const Triangles& a, const Pose& X_BA) {
     for (std::uint32_t i = 0; i < a.size(); ++i) {
@@ -73,19 +72,10 @@ class TriangleSearch {
       for (Vector3d& corner : piece.corners) box.extend(corner = X_BA * corner);
       if (box.intersects(b_.bounds())) add(piece);
     }
-    while (!waiting_.empty() && waiting_.top().limit > enough() && found_.pieces < accuracy_.pieces_max) {
-      const TrianglePiece piece = waiting_.top();
-      waiting_.pop();
-      split(piece);
-    }
-    if (!waiting_.empty()) dropped_ = std::max(dropped_, waiting_.top().limit);
-    found_.bound = std::max(0.0, dropped_ - found_.depth);
-    return found_;
+    return search_.run([&](const TrianglePiece& piece) { split(piece); });
   }
 
  private:
-  double enough() const { return found_.depth + std::max(accuracy_.absolute, accuracy_.relative * found_.depth); }
-
   void split(const TrianglePiece& piece) {
     std::size_t longest = 0;
     const auto side = [&](std::size_t i) { return (piece.corners[(i + 1) % 3] - piece.corners[i]).squaredNorm(); };
@@ -101,12 +91,9 @@ class TriangleSearch {
   }
 
   void add(TrianglePiece piece) {
-    piece.number = ++found_.pieces;
+    piece.number = search_.next_number();
     piece.limit = std::min(piece.limit, limit_of(piece));
-    if (piece.limit > enough())
-      waiting_.push(piece);
-    else
-      dropped_ = std::max(dropped_, piece.limit);
+    search_.add(piece);
   }
 
   double limit_of(const TrianglePiece& piece) {
@@ -116,13 +103,10 @@ class TriangleSearch {
         std::max({(c[0] - middle).squaredNorm(), (c[1] - middle).squaredNorm(), (c[2] - middle).squaredNorm()}));
     const Triangles::Nearest near = b_.nearest(middle);
     double limit = b_.is_inside(middle) ? near.distance + radius : radius - near.distance;
-    if (limit <= enough()) return std::max(0.0, limit);
+    if (limit <= search_.enough()) return std::max(0.0, limit);
     for (const Vector3d& x : {c[0], c[1], c[2], middle}) {
       const Triangles::Nearest there = b_.nearest(x);
-      if (there.distance > found_.depth && b_.is_inside(x)) {
-        found_.depth = there.distance;
-        found_.place = x;
-      }
+      if (there.distance > search_.depth() && b_.is_inside(x)) search_.found(there.distance, x);
       const double farthest = std::max(
           {b_.distance(c[0], there.triangle), b_.distance(c[1], there.triangle), b_.distance(c[2], there.triangle)});
       limit = std::min(limit, farthest);
@@ -131,10 +115,7 @@ class TriangleSearch {
   }
 
   const Triangles& b_;
-  const Accuracy& accuracy_;
-  std::priority_queue<TrianglePiece> waiting_;
-  Depth found_;
-  double dropped_ = 0;
+  BestFirst<TrianglePiece> search_;
 };
 
 }  // namespace
