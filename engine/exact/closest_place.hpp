@@ -26,23 +26,30 @@ inline Place place_at(bool is_arc, double c, double s, double t) {
   return {t, c * cosine - s * sine, s * cosine + c * sine};
 }
 
-/// Newton's method on the distance, started at the segment's middle (c, s) and clamped to the segment. Where the
-/// distance has a maximum instead of a minimum, the downhill end is taken. Over one segment the
-/// distance is nearly a parabola, so most samples need one step.
+/// Newton's method on the distance, started at the segment's middle (c, s), within the part of the segment in which the
+/// slopes met so far leave the minimum: beside an axis or an apex the distance turns more sharply than a parabola, and
+/// Newton's steps alone would jump over the place, or to and fro. Where the distance has a maximum instead of a
+/// minimum, the downhill end is taken. Over most segments the distance is nearly a parabola, and one step is enough.
 /// @param half          of the segment's width, in t
 /// @param radius_slope  derivative by t of the radius of the ball that the curve carries
 inline Place closest_place(const CurveFromSurface& curve, double c, double s, double half, double radius_slope = 0) {
-  constexpr int kStepsMax = 5;  // a bound of the work: two are needed, and a place short of the best is a place too
+  constexpr int kStepsMax = 40;  // a bound of the work: two are needed, or as many as halve the segment to nothing
+  constexpr int kNewtonMax = 4;  // then halves: Newton's steps are of no use where the distance has a kink
   constexpr double kGain =
       1e-10;  // m, the accuracy that SearchThresholds count on: what another step would have to win
   Place at{0, c, s};
   if (half == 0) return at;
   with_measure(curve, [&](auto&& measure_at) {
+    double low = -half;
+    double high = half;
     for (int i = 0; i < kStepsMax; ++i) {
       const Measure m = measure_at(at.c, at.s);
       const double slope = m.slope - radius_slope;
-      const double wanted = m.bend > 0 ? at.t - slope / m.bend : (slope > 0 ? -half : half);
-      const double t = std::clamp(wanted, -half, half);
+      (slope > 0 ? high : low) = at.t;
+      const double wanted = m.bend > 0 ? at.t - slope / m.bend : (slope > 0 ? low : high);
+      double t = std::clamp(wanted, low, high);
+      const bool is_at_end = t == -half || t == half;
+      if (i >= kNewtonMax && !is_at_end) t = 0.5 * (low + high);
       if (std::abs((t - at.t) * slope) < kGain) return;
       at = place_at(curve.is_arc, c, s, t);
     }

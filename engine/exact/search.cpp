@@ -139,9 +139,11 @@ bool Search::evaluate_candidate(const PlacedFeature& placed, std::uint32_t face,
   c.p = placed.point(c.place);
   c.at = pair_.base.faces[face].surface->at(c.p);
   c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
-  if (c.gap >= motion.margin || c.gap < -pair_.base.options.spacing) return false;
+  // A segment that crosses an edge of the face may be a spacing deep behind it.
+  if (c.gap >= motion.margin || c.gap < -2 * pair_.base.options.spacing) return false;
   c.normal = c.at.normal;
-  if (!accept_candidate(pair_, placed, face, c) || c.gap >= motion.margin) return false;
+  if (!accept_candidate(pair_, placed, face, c)) return false;
+  if (c.gap >= motion.margin || c.gap < -pair_.base.options.spacing) return false;
   c.gap_ahead = c.gap + c.normal.dot(pair_.moved(c.p, motion.free_twist));
   c.weight *= touching_fraction(placed, c, count) * pair_.normal_cone_weight(c.sample, c.normal);
   return true;

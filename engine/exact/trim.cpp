@@ -165,11 +165,11 @@ int Trim::Axis::neighbour(int i, int step) const {
   return n >= 0 && n < count ? n : -1;
 }
 
-std::array<int, 2> Trim::Axis::around_of(double x) const {
+std::array<int, 2> Trim::Axis::cells_of(double x) const {
   constexpr double kRounding = 1e-6;  // of a cell
   const double i = (x - from) * per_cell;
   const double within = i - std::floor(i);
-  return {within < kRounding ? -2 : -1, within > 1 - kRounding ? 2 : 1};
+  return {within < kRounding ? -1 : 0, within > 1 - kRounding ? 1 : 0};
 }
 
 int Trim::cell_at(const std::array<double, 2>& chart) const {
@@ -239,6 +239,7 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
   // Cells that an edge passes, and their neighbours.
   const double step = 0.45 * smallest;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> passes;  // cell, edge
+  std::vector<bool> crossed(cell_count, false);
   const auto mark = [&](const Chart& chart, std::uint32_t edge) {
     const int at = cell_at(chart);
     if (at < 0) return;
@@ -247,13 +248,17 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
     const bool near_pole =
         has_poles && std::abs(chart[1]) > cells.near_pole;  // turns are short there: all of them are near
     const int half = a_.count / 2;
-    const auto [a_first, a_last] = near_pole ? std::array{-half, half} : a_.around_of(chart[0]);
-    const auto [b_first, b_last] = b_.around_of(chart[1]);
-    for (int db = b_first; db <= b_last; ++db) {
-      for (int da = a_first; da <= a_last; ++da) {
+    const auto [a_first, a_last] = near_pole ? std::array{1 - half, half - 1} : a_.cells_of(chart[0]);
+    const auto [b_first, b_last] = b_.cells_of(chart[1]);
+    for (int db = b_first - 1; db <= b_last + 1; ++db) {
+      for (int da = a_first - 1; da <= a_last + 1; ++da) {
         const int na = a_.neighbour(a, da);
         const int nb = b_.neighbour(b, db);
-        if (na >= 0 && nb >= 0) passes.emplace_back(static_cast<std::uint32_t>(nb * a_.count + na), edge);
+        if (na < 0 || nb < 0) continue;
+        const auto cell_number = static_cast<std::uint32_t>(nb * a_.count + na);
+        passes.emplace_back(cell_number, edge);
+        const bool is_within = near_pole || (da >= a_first && da <= a_last);
+        if (is_within && db >= b_first && db <= b_last) crossed[cell_number] = true;
       }
     }
   };
@@ -264,7 +269,9 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
   }
   first_edge_.assign(cell_count + 1, 0);
   for (const auto& [at, edge] : passes) {
-    cells_[at] = Where::border;
+    Where& cell_is = cells_[at];
+    const bool is_out = cell_is == Where::outside || cell_is == Where::beside;
+    cell_is = is_out && !crossed[at] ? Where::beside : Where::border;
     ++first_edge_[at + 1];
     edges_.push_back(edge);
   }

@@ -22,7 +22,10 @@ namespace verisim::exact {
 
 class Trim {
  public:
-  enum class Where : std::uint8_t { outside, inside, border };
+  /// border: edges pass through the cell; a place that none of them limits is inside. beside: they pass by it, and the
+  /// cell itself is outside; a place that none of them limits is outside, because the edge that does limit it may be
+  /// too far away to be named.
+  enum class Where : std::uint8_t { outside, inside, border, beside };
   /// How fine the raster is. BodyOptions says why.
   struct Cells {
     double size;       ///< wanted [m]
@@ -42,7 +45,7 @@ class Trim {
 
   struct Answer {
     Where where;
-    std::span<const std::uint32_t> edges;  ///< border only: edges that pass within a cell or two, ascending
+    std::span<const std::uint32_t> edges;  ///< border and beside: edges that pass within a cell or two, ascending
   };
   /// Where a point of the surface lies. About 10 ns.
   [[nodiscard]] Answer find(const AnalyticSurface& surface, const Vector3d& foot) const;
@@ -54,8 +57,9 @@ class Trim {
     bool around = false;  ///< the last cell's neighbour is the first
     [[nodiscard]] int index(double x) const;
     [[nodiscard]] int neighbour(int i, int step) const;  ///< -1: none
-    /// Steps to the first and the last neighbour of x. What lies on the limit of two cells, to rounding, is in both.
-    [[nodiscard]] std::array<int, 2> around_of(double x) const;
+    /// Steps from the cell of x to the first and the last cell in which x lies: what lies on the limit of two cells, to
+    /// rounding, is in both.
+    [[nodiscard]] std::array<int, 2> cells_of(double x) const;
   };
   [[nodiscard]] int cell_at(const std::array<double, 2>& chart) const;
 
