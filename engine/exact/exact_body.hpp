@@ -105,6 +105,12 @@ struct Feature {
   std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row; at most kGroupMax
   std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; a contact must lie on it
   bool against_round_only = false;   ///< axes of pins and cones
+  bool closed = false;               ///< a full circle or ellipse
+  std::uint32_t begin = 0, end = 0;  ///< samples [begin, end)
+  /// Does the curve go on beyond the end of a sample's segment at which t has this sign?
+  [[nodiscard]] bool goes_on(std::uint32_t sample, double t) const {
+    return closed || (t < 0 ? sample > begin : sample + 1 < end);
+  }
   [[nodiscard]] double radius_at(double c) const { return radius + radius_slope * c; }  ///< c as in sample_c
 };
 

@@ -80,6 +80,7 @@ Feature feature_of(const Segmentation& split, const BodyOptions& options) {
   f.half_length = f.half_width * std::max(split.x.norm(), split.y.norm());
   f.stiffness = 2 * f.half_length * options.line_stiffness;
   const bool is_arc = split.kind == Feature::Kind::arc;
+  f.closed = is_arc && split.segments * split.width > pinned::kFullTurn * (1 - 1e-9);
   f.group = is_arc ? static_cast<std::uint32_t>(std::clamp(static_cast<int>(options.group_angle / split.width), 1,
                                                            static_cast<int>(kGroupMax)))
                    : kGroupMax;
@@ -89,7 +90,9 @@ Feature feature_of(const Segmentation& split, const BodyOptions& options) {
 /// Adds the feature and its samples.
 void add(ExactBody& body, const Feature& feature, std::span<const Sample> samples) {
   const auto number = static_cast<std::uint32_t>(body.features.size());
-  body.features.push_back(feature);
+  Feature& added = body.features.emplace_back(feature);
+  added.begin = static_cast<std::uint32_t>(body.sample_c.size());
+  added.end = added.begin + static_cast<std::uint32_t>(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto at = static_cast<std::uint32_t>(body.sample_c.size());
     if (i % kBlockSize == 0) body.blocks.push_back({number, at, at});

@@ -21,6 +21,8 @@ class Search {
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
                                         Candidate& c);
+  [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
+  [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
                      std::uint32_t face);
   void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
@@ -117,7 +119,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     *next = kOutOfReach;
     c.place = closest_place(curve, m.mover.sample_c[c.sample], m.mover.sample_s[c.sample], placed.feature->half_width,
                             placed.feature->radius_slope);
-    if (!evaluate_candidate(placed, face, count, c)) continue;
+    if (!evaluate_candidate(placed, face, count, c) || is_passed_by(placed, curve, c)) continue;
     if (c.gap_ahead < best.gap_ahead) best = c;
     if (c.gap_ahead < 0 && c.weight > strongest.weight) strongest = c;
   }
@@ -147,6 +149,36 @@ bool Search::evaluate_candidate(const PlacedFeature& placed, std::uint32_t face,
   c.gap_ahead = c.gap + c.normal.dot(pair_.moved(c.p, motion.free_twist));
   c.weight *= touching_fraction(placed, c, count) * pair_.normal_cone_weight(c.sample, c.normal);
   return true;
+}
+
+/// Is the candidate's place the end of a segment beyond which the curve goes on?
+bool Search::is_between(const PlacedFeature& placed, const Candidate& c) const {
+  const Feature& feature = *placed.feature;
+  return feature.own_face == kNoFace && c.edge_fraction == 0 && feature.half_width > 0 &&
+         std::abs(c.place.t) >= feature.half_width && feature.goes_on(c.sample, c.place.t);
+}
+
+/// True if the curve rolls round within a hollow face, its closest place lies in another segment, and by the end of the
+/// step it will not have come to this end. What slides round a hole then has the one contact that keeps its speed; a
+/// second, at an angle, would brake it. Where the hollow is hardly wider than the curve, the closest place passes along
+/// much of the curve within a step, and ends are needed.
+bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const {
+  if (!placed.is_arc() || !is_between(placed, c)) return false;
+  const RelativeMotion& motion = pair_.motion;
+  Measure here{};
+  with_measure(curve, [&](auto&& measure_at) { here = measure_at(c.place.c, c.place.s); });
+  const double length = placed.tangent(c.place).norm();
+  const double bend = here.bend / (length * length);  // 1/m, of the gap along the curve
+  const double of_curve = c.at.normal.dot(placed.origin - c.p) / (length * length);
+  const double of_face = of_curve - bend;
+  if (!(bend > 0 && of_face > 0)) return false;
+  const double slide = std::max(pair_.moved(c.p, motion.free_twist).norm(), pair_.moved(c.p, motion.last_twist).norm());
+  const double passes = slide * of_face * of_curve / bend;      // rad, along the curve
+  const Vector3d axis = placed.x.cross(placed.y).normalized();  // turns about it move the curve along itself
+  const auto tilt = [&](const Vector3d& omega) { return motion.dt * (omega - omega.dot(axis) * axis).norm(); };
+  const double tilts = motion.thresholds.coincident / placed.feature->half_length +
+                       std::max(tilt(motion.free_twist.angular), tilt(motion.last_twist.angular));
+  return passes < motion.thresholds.conforms && std::abs(here.slope) / length > tilts;
 }
 
 /// Adds a row for the end of a coincident group on the given side (-1 or 1). All places of such a group are about
