@@ -1,5 +1,6 @@
 #include "engine/exact/search.hpp"
 
+#include "engine/exact/conforming_normals.hpp"
 #include "engine/exact/edge_ownership.hpp"
 #include "engine/exact/ownership_culling.hpp"
 
@@ -23,6 +24,7 @@ class Search {
                                         Candidate& c);
   [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
+  void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
                      std::uint32_t face);
   void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
@@ -125,6 +127,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   }
   if (best.gap_ahead == kOutOfReach) return;
   add_row(placed, best, count, face);
+  if (placed.feature->own_face != kNoFace) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
     add_row(placed, strongest, count, face);
@@ -179,6 +182,23 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   const double tilts = motion.thresholds.coincident / placed.feature->half_length +
                        std::max(tilt(motion.free_twist.angular), tilt(motion.last_twist.angular));
   return passes < motion.thresholds.conforms && std::abs(here.slope) / length > tilts;
+}
+
+/// Adds the rows of a ball that may come to other places of a hollow within the step (conforming_normals.hpp).
+void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count,
+                            std::uint32_t face) {
+  const RelativeMotion& motion = pair_.motion;
+  const ConformingNormals around = conforming_normals(*pair_.base.faces[face].surface, best.p, best.at);
+  const double slide =
+      std::max(pair_.moved(best.p, motion.free_twist).norm(), pair_.moved(best.p, motion.last_twist).norm());
+  if (!(slide > motion.thresholds.conforms * around.radius)) return;
+  for (std::size_t i = 0; i < around.count; ++i) {
+    Candidate c = best;
+    c.normal = around.normals[i];
+    c.at = {best.at.distance + (c.normal - best.normal).dot(best.p - around.pivot), c.normal};
+    c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
+    if (c.gap < motion.margin && accept_candidate(pair_, placed, face, c)) add_row(placed, c, count, face);
+  }
 }
 
 /// Adds a row for the end of a coincident group on the given side (-1 or 1). All places of such a group are about

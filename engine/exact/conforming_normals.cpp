@@ -1,0 +1,76 @@
+#include "engine/exact/conforming_normals.hpp"
+
+#include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
+
+namespace verisim::exact {
+namespace {
+
+// Angles from the closest normal [rad]. What rests comes to lie within half of the first, so that the force is upright
+// to 1 %; each next is farther by a factor, so that planes leave a small part of the clearance wherever the point goes.
+constexpr std::array<double, 11> kTurns = {0.02, 0.032, 0.051, 0.082, 0.131, 0.21, 0.336, 0.537, 0.859, 1.37, 2.2};
+constexpr std::array<double, 5> kLeans = {0.02, 0.05, 0.13, 0.34, 0.86};
+constexpr int kSides = 8;
+static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
+static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
+
+/// Normals that turn with the closest one about an axis.
+void turn_about(const Vector3d& axis, const Vector3d& normal, ConformingNormals& found) {
+  const Vector3d along = normal.dot(axis) * axis;
+  const Vector3d across = normal - along;
+  const Vector3d side = axis.cross(across);
+  for (const double turn : kTurns)
+    for (const double sense : {-1.0, 1.0})
+      found.normals[found.count++] =
+          (along + pinned::cos(turn) * across + sense * pinned::sin(turn) * side).normalized();
+}
+
+/// Normals on circles about the closest one.
+void lean_to_all_sides(const Vector3d& normal, ConformingNormals& found) {
+  const Vector3d first = normal.unitOrthogonal();
+  const Vector3d second = normal.cross(first);
+  for (const double lean : kLeans) {
+    for (int i = 0; i < kSides; ++i) {
+      const double turn = pinned::kFullTurn * i / kSides;
+      const Vector3d side = pinned::cos(turn) * first + pinned::sin(turn) * second;
+      found.normals[found.count++] = pinned::cos(lean) * normal + pinned::sin(lean) * side;
+    }
+  }
+}
+
+}  // namespace
+
+ConformingNormals conforming_normals(const AnalyticSurface& surface, const Vector3d& p, const SurfaceAt& at) {
+  ConformingNormals found;
+  const Meridian& meridian = surface.meridian();
+  if (surface.side() > 0 || meridian.kind == SurfaceKind::plane) return found;
+  const Vector3d& axis = surface.axis();
+  found.pivot = surface.point();
+  const Vector3d arm = p - surface.point();
+  const Vector3d across = arm - arm.dot(axis) * axis;
+  switch (meridian.kind) {
+    case SurfaceKind::plane:
+      break;
+    case SurfaceKind::cylinder:
+    case SurfaceKind::cone:
+      if (meridian.kind == SurfaceKind::cone) found.pivot += meridian.apex() * axis;
+      found.radius = across.norm();
+      turn_about(axis, at.normal, found);
+      break;
+    case SurfaceKind::sphere:
+      found.radius = arm.norm();
+      lean_to_all_sides(at.normal, found);
+      break;
+    case SurfaceKind::torus: {
+      const double rho = across.norm();
+      if (rho == 0) return found;
+      found.pivot += meridian.ring / rho * across;
+      found.radius = (p - found.pivot).norm();
+      turn_about(axis.cross(across) / rho, at.normal, found);
+      break;
+    }
+  }
+  return found;
+}
+
+}  // namespace verisim::exact

@@ -1,0 +1,29 @@
+// The directions in which a ball that fits closely into a hollow may be stopped by it. The ball's centre stays within
+// the hollow shrunk by the ball's radius. Where the centre can pass much of that within a step, because the ball is
+// hardly smaller than the hollow, or because it lies in a cone and its centre is on the axis, one tangent plane says
+// little of it. The hollow is convex (round a cylinder's, cone's or ball's inside; across a torus's tube), so its other
+// tangent planes hold as well: none stops the ball where the hollow does not. Base coordinates [m]. Private to this
+// folder.
+#pragma once
+
+#include <array>
+
+#include "engine/geometry/analytic_surface.hpp"
+
+namespace verisim::exact {
+
+/// Other normals of a hollow surface, beside the one that is closest to a point.
+struct ConformingNormals {
+  static constexpr std::size_t kMax = 40;
+  Vector3d pivot;     ///< the point for which tangent planes of all of these normals are equally far
+  double radius = 0;  ///< m: how far the point may move until the closest normal has turned by a radian
+  std::size_t count = 0;
+  std::array<Vector3d, kMax> normals;
+};
+
+/// @param p, at  a point within the hollow, and the surface seen from it
+/// @returns no normals for a plane and for a surface that is not hollow
+[[nodiscard]] ConformingNormals conforming_normals(const AnalyticSurface& surface, const Vector3d& p,
+                                                   const SurfaceAt& at);
+
+}  // namespace verisim::exact
