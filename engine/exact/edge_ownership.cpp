@@ -72,20 +72,17 @@ class ComparedFaces {
     return at;
   }
 
-  /// True if a place of the edge, where both are compared as equally far, lies within either face, and no third face
-  /// that shares a convex edge with one of them is farther, now and as the rule compares: near a corner a place may be
-  /// beyond the third by the end of the step, when this row has kept it from going there.
+  /// True if a place of the edge, where both are compared as equally far, lies within either face and inside of every
+  /// third face that shares a convex edge with one of them.
   [[nodiscard]] bool are_outermost(const Vector3d& p) const {
-    const At here = at(p);
-    const double farthest = std::max(here.a.distance, here.b.distance);
-    return is_outermost(p, a_, b_, here.a, farthest) && is_outermost(p, b_, a_, here.b, farthest);
+    return is_outermost(p, a_, b_) && is_outermost(p, b_, a_);
   }
 
  private:
   [[nodiscard]] const AnalyticSurface& surface(std::uint32_t face) const { return *pair_.base.faces[face].surface; }
 
-  [[nodiscard]] bool is_outermost(const Vector3d& p, std::uint32_t face, std::uint32_t other, const SurfaceAt& here,
-                                  double farthest) const {
+  [[nodiscard]] bool is_outermost(const Vector3d& p, std::uint32_t face, std::uint32_t other) const {
+    const SurfaceAt here = surface(face).at(p);
     const Trim::Answer answer = pair_.base.faces[face].trim->find(surface(face), p - here.distance * here.normal);
     for (const std::uint32_t e : answer.edges) {
       const ExactEdge& edge = pair_.base.edges[e];
@@ -93,8 +90,7 @@ class ComparedFaces {
       if (edge.convexity != Convexity::convex || third == other) continue;
       const SurfaceAt there = surface(third).at(p);
       const ComparedDistances compared = compared_by(pair_, rule_, p, here, there);
-      if (there.distance > farthest && compared.other > compared.mine && edge.limits_face_at(face, p, there.distance))
-        return false;
+      if (compared.other > compared.mine && edge.limits_face_at(face, p, there.distance)) return false;
     }
     return answer.where != Trim::Where::outside;
   }
@@ -104,27 +100,16 @@ class ComparedFaces {
   OwnershipRule rule_;
 };
 
-/// Finds the place where the sample's segment crosses the edge between two faces: there both distances are equal, as
-/// a rule compares them, and the contact normal is perpendicular to both curves. The rule is that of the candidate's
-/// place or, where that is the position's, of the place that is closest to the other face: a segment may come to the
-/// edge within the step, or slide along one of the faces towards it. If there is such a place, changes `c` into it and
+/// The place where the sample's segment crosses the edge between two faces: there both distances are equal, as a rule
+/// compares them, and the contact normal is perpendicular to both curves. If there is one, changes `c` into it and
 /// returns true.
-bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
-                Candidate& c) {
-  if (placed.feature->half_width == 0) return false;
-  const AnalyticSurface& a = *pair.base.faces[face].surface;
-  const AnalyticSurface& b = *pair.base.faces[other].surface;
-  const Place near_b = closest_place_to(pair, b, placed, c.sample);
-  const Vector3d p_b = placed.point(near_b);
-  const auto rule_at = [&](const Vector3d& p) {
-    return ownership_rule(a.at(p).distance, b.at(p).distance, pair.motion.thresholds.coincident);
-  };
-  const OwnershipRule here = rule_at(c.p);
-  const ComparedFaces faces(pair, face, other, here == OwnershipRule::by_position ? rule_at(p_b) : here);
+/// @param near_b  the segment's place that is closest to the other face
+bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const PlacedFeature& placed, const Place& near_b,
+                   Candidate& c) {
   double t_a = c.place.t;  // here b owns the place
   double t_b = near_b.t;   // here a should
   double d_a = faces.at(c.p).lead;
-  double d_b = faces.at(p_b).lead;
+  double d_b = faces.at(placed.point(near_b)).lead;
   if (!(d_a < 0 && d_b > 0)) return false;
   ComparedFaces::At at{};
   constexpr int kStepsMax = 30;          // a bound of the work: about six are needed
@@ -157,7 +142,33 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t
   c.normal = mixed / length;
   c.gap = (weight_a * at.a.distance + (1 - weight_a) * at.b.distance) / length;
   c.edge_fraction = 4 * weight_a * (1 - weight_a);
+  // A place that is outside by position is no overlap, whatever the edge by motion says of it.
+  const double farthest = std::max(at.a.distance, at.b.distance);
+  if (c.gap * length < std::min(0.0, farthest) - pair.motion.thresholds.coincident) return false;
   return c.gap > -pair.base.options.spacing && faces.are_outermost(c.p);
+}
+
+/// The crossing by position, or else by the rule of the candidate's place or, where that is the position's, of the
+/// place that is closest to the other face: a segment may come to the edge within the step, or slide along one of the
+/// faces towards it.
+bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, std::uint32_t other,
+                Candidate& c) {
+  if (placed.feature->half_width == 0) return false;
+  const AnalyticSurface& a = *pair.base.faces[face].surface;
+  const AnalyticSurface& b = *pair.base.faces[other].surface;
+  const Place near_b = closest_place_to(pair, b, placed, c.sample);
+  const auto rule_at = [&](const Vector3d& p) {
+    return ownership_rule(a.at(p).distance, b.at(p).distance, pair.motion.thresholds.coincident);
+  };
+  const OwnershipRule here = rule_at(c.p);
+  const OwnershipRule by_motion = here == OwnershipRule::by_position ? rule_at(placed.point(near_b)) : here;
+  for (const OwnershipRule rule : {OwnershipRule::by_position, by_motion}) {
+    Candidate crossed = c;
+    if (!cross_edge_by(ComparedFaces(pair, face, other, rule), pair, placed, near_b, crossed)) continue;
+    c = crossed;
+    return true;
+  }
+  return false;
 }
 
 /// Which of the two faces of an edge finds the places where a segment crosses it, so that one does: the one that the

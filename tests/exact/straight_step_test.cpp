@@ -19,13 +19,19 @@ struct Sizes {
 };
 constexpr Sizes kSizes[] = {{0.03, 0.01}, {0.02, 0.019}, {0.06, 0.005}};
 
+/// Does the ball pass so much of its room in a step [m] that further rows hold it?
+bool is_close(const Sizes& sizes, double slide) {
+  return slide > SearchThresholds().conforms * sizes.room();
+}
+
 Pair ball_in_tube(const Sizes& sizes) {
   return {make(Kind::tube, {sizes.bore + 0.01, sizes.bore, 0.02}), make(Kind::sphere, {sizes.ball})};
 }
 
 // A ball runs around in a tube. Each step it goes on straight along the wall, by v dt beside a circle of radius
 // R - r: the overlap is sqrt((R - r)^2 + (v dt)^2) - (R - r), about (v dt)^2 / 2 (R - r), however many steps it has
-// run.
+// run. Where it passes more than a tenth of R - r in a step, further rows keep it nearer to the wall
+// (conforming_normals.hpp).
 TEST(StraightStep, OfABallAroundATubeEndsAsDeepAsAStraightLineBesideACircle) {
   for (const Sizes& sizes : kSizes) {
     Pair pair = ball_in_tube(sizes);
@@ -47,6 +53,8 @@ TEST(StraightStep, OfABallAroundATubeEndsAsDeepAsAStraightLineBesideACircle) {
         const double along = kStep * (u.head<3>() - across.dot(u.head<3>()) * across).norm();
         p += kStep * u.head<3>();
         const double overlap = std::hypot(sizes.room(), along) - sizes.room();
+        EXPECT_LE(p.norm() - sizes.room(), 1.01 * overlap + kRounding) << "frame " << i;
+        if (is_close(sizes, kStep * speed)) continue;
         EXPECT_NEAR(p.norm() - sizes.room(), overlap, 0.01 * overlap + kRounding) << "frame " << i;
       }
     }
@@ -73,6 +81,7 @@ TEST(StraightStep, OfATurningTubeEndsAsDeepAsAStraightLineBesideBothCircles) {
         const int tube = solver.add_body(center, Matrix6d::Identity(), u, u);
         solver.add_rows(pair.link.rows().rows(), tube, kFixed);
         solver.solve(kStep);
+        if (is_close(sizes, kStep * omega * (arm + sizes.room()))) continue;
         ASSERT_NEAR(solver.velocity(tube)[5], omega, 1e-6) << "straight along the wall, nothing stops it";
         const double phi = kStep * omega;
         const Quaterniond turned = rotation_from_vector({0, 0, phi});
