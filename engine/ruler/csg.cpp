@@ -158,6 +158,18 @@ class CsgReader {
     return round(X, {.kind = Divider::Kind::sphere, .radius = radius}, -0.25 * pinned::kFullTurn,
                  0.25 * pinned::kFullTurn);
   }
+  std::uint32_t torus(const Pose& X) {
+    const auto [ring, radius] = numbers<2>();
+    const Divider at_place = ruler::placed({.kind = Divider::Kind::torus, .radius = radius, .ring = ring}, X);
+    std::uint32_t index = 0;
+    const std::uint32_t node = divide(at_place, index);
+    constexpr double kQuarter = 0.25 * pinned::kFullTurn;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        csg_.faces_.push_back({index, at_place.point, X.rotation * Vector3d::UnitX(), X.rotation * Vector3d::UnitY(),
+                               at_place.axis, i * kQuarter, (i + 1) * kQuarter, j * kQuarter, (j + 1) * kQuarter});
+    return node;
+  }
   Pose placement() {
     Pose X;
     const auto p = numbers<3>();
@@ -185,6 +197,8 @@ class CsgReader {
       node = sphere(X);
     else if (kind == "tube")
       node = tube(X);
+    else if (kind == "torus")
+      node = torus(X);
     else if (kind == "placed") {
       const Pose inner = placement();
       node = solid(X * inner, depth + 1);
@@ -222,6 +236,8 @@ Ball around(const Face& face, const Divider& divider) {
       return {face.origin, divider.radius};
     case Divider::Kind::cylinder:
       return {face.origin + v * face.z, hypotenuse(divider.radius, half)};
+    case Divider::Kind::torus:
+      return {face.origin, divider.ring + divider.radius};
     case Divider::Kind::cone:
       return {face.origin + v * divider.cosine * face.z, hypotenuse(face.v_high * divider.sine, half * divider.cosine)};
   }
@@ -232,6 +248,7 @@ Ball around(const Face& face, const Divider& divider) {
 
 Csg::Csg(std::string_view text) {
   CsgReader(text, *this).read();
+  find_senses();
   for (const Face& face : faces_) middle_ += face.origin / static_cast<double>(faces_.size());
   for (const Face& face : faces_) {
     const Ball ball = around(face, dividers_[face.divider]);
@@ -263,32 +280,46 @@ double Csg::value(std::span<const double> values) const {
   return at.back();
 }
 
-double Csg::least_value(std::span<const double> low, std::span<const double> high) const {
-  VERISIM_ASSERT(low.size() == dividers_.size());
-  VERISIM_ASSERT(high.size() == dividers_.size());
-  thread_local std::vector<std::array<double, 2>> at;  // of the nodes: from, to
+int Csg::side(std::span<const std::int8_t> sides) const {
+  VERISIM_ASSERT(sides.size() == dividers_.size());
+  thread_local std::vector<std::int8_t> at;  // of the nodes
   at.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
-    const std::array<double, 2> a =
-        node.operation == Operation::divider ? std::array{low[node.first], high[node.first]} : at[node.first];
-    const std::array<double, 2> b = node.operation < Operation::least ? a : at[node.second];
     switch (node.operation) {
       case Operation::divider:
-        at[i] = a;
+        at[i] = sides[node.first];
         break;
       case Operation::complement:
-        at[i] = {-a[1], -a[0]};
+        at[i] = static_cast<std::int8_t>(-at[node.first]);
         break;
       case Operation::least:
-        at[i] = {std::min(a[0], b[0]), std::min(a[1], b[1])};
+        at[i] = std::min(at[node.first], at[node.second]);
         break;
       case Operation::greatest:
-        at[i] = {std::max(a[0], b[0]), std::max(a[1], b[1])};
+        at[i] = std::max(at[node.first], at[node.second]);
         break;
     }
   }
-  return at.back()[0];
+  return at.back();
+}
+
+void Csg::find_senses() {
+  std::vector<std::uint8_t> sense_of_node(nodes_.size(), 0), sense(dividers_.size(), 0);  // 1: as it is, 2: opposite
+  sense_of_node.back() = 1;
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const Node& node = nodes_[i];
+    const std::uint8_t here = sense_of_node[i];
+    if (node.operation == Operation::divider) {
+      sense[node.first] |= here;
+    } else if (node.operation == Operation::complement) {
+      sense_of_node[node.first] = static_cast<std::uint8_t>(here ^ 3U);
+    } else {
+      sense_of_node[node.first] = sense_of_node[node.second] = here;
+    }
+  }
+  for (std::uint32_t i = 0; i < sense.size(); ++i)
+    if (sense[i] == 3) of_both_senses_.push_back(i);
 }
 
 Csg Csg::placed(const Pose& X) const {

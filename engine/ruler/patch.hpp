@@ -65,6 +65,22 @@ struct Patch {
               .second = 2 * hv * hu * d.sine + far * hu * hu,
               .third = 3 * hv * hu * hu * d.sine + far * hu * hu * hu};
     }
+    case Divider::Kind::torus: {
+      const double c = pinned::cos(v), s = pinned::sin(v);
+      const double c_max = std::min(1.0, std::abs(c) + hv), s_max = std::min(1.0, std::abs(s) + hv);
+      const double far = d.ring + r * std::min(1.0, c + hv), rho = d.ring + r * c;  // m, from the axis
+      const Vector3d normal = c * out + s * face.z;
+      return {.middle = face.origin + d.ring * out + r * normal,
+              .a = hu * rho * on,
+              .b = hv * r * (c * face.z - s * out),
+              .aa = -rho * hu * hu * out,
+              .ab = -r * s * hu * hv * on,
+              .bb = -r * hv * hv * normal,
+              .first = hypotenuse(far * hu, r * hv),
+              .second = far * hu * hu + r * (2 * s_max * hu * hv + hv * hv),
+              .third = far * hu * hu * hu +
+                       r * (3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv)};
+    }
     default: {
       const double c = pinned::cos(v), s = pinned::sin(v);
       const double c_max = std::min(1.0, c + hv), s_max = std::min(1.0, std::abs(s) + hv);
@@ -86,6 +102,7 @@ struct Patch {
 struct Model {
   Linear linear;
   double above = 0, below = 0;
+  [[nodiscard]] Model operator-() const { return {{-linear.at, -linear.du, -linear.dv}, below, above}; }
 };
 
 [[nodiscard]] inline Model model_of(const Divider& divider, const Patch& patch, double sign) {
@@ -108,7 +125,7 @@ struct Model {
                bb = twice(patch.b, patch.b, patch.bb);
   const double speed = is_plane ? 0 : wide + patch.bent();  // of p across the axis, at most
   const double ways = is_plane ? 0 : speed / least_radius;
-  const double third = (1.1548 * ways * ways * speed + 3 * ways * patch.second + patch.third) / 6;
+  const double third = (third_factor(divider) * ways * ways * speed + 3 * ways * patch.second + patch.third) / 6;
   model.above = std::min(model.above, 0.5 * std::max(0.0, aa) + 0.5 * std::max(0.0, bb) + std::abs(ab) + third);
   model.below = std::min(model.below, 0.5 * std::max(0.0, -aa) + 0.5 * std::max(0.0, -bb) + std::abs(ab) + third);
   return model;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/ruler/best_first.hpp"
 
 namespace verisim::ruler {
 namespace {
