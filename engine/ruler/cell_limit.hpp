@@ -1,5 +1,5 @@
-// How deep no point of a patch is in a solid: by the cells that lie outside of it (outside.hpp). Three proofs, each of a
-// point of the cell that is near enough for every point of the patch:
+// How deep no point of a patch is in a solid: by the cells that lie outside of it (outside.hpp). Three proofs, each of
+// a point of the cell that is near enough for every point of the patch:
 //  - one divider keeps the patch out of the cell: its foot is in the cell, and the divider's model bounds how far;
 //  - the cell is convex: the distance to it is largest at a corner of the patch's polygon, but for how the patch bends;
 //  - two dividers that cross at a right angle keep it out: the edge in which they do.
@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/ruler/coaxial.hpp"
 #include "engine/ruler/foot.hpp"
 #include "engine/ruler/outside.hpp"
 #include "engine/ruler/ranges.hpp"
@@ -33,9 +34,9 @@ class CellLimit {
     corner_.reset();
     sides_.resize(ranges.size());
     for (std::size_t i = 0; i < ranges.size(); ++i)
-      sides_[i] = static_cast<std::int8_t>(ranges.low(i) > reach + 2 * kShift    ? 1
-                                          : ranges.high(i) < -reach - 2 * kShift ? -1
-                                                                                 : 0);
+      sides_[i] = static_cast<std::int8_t>(ranges.low(i) > reach + 2 * kShift     ? 1
+                                           : ranges.high(i) < -reach - 2 * kShift ? -1
+                                                                                  : 0);
     cells_.find(sides_);
     order_.clear();
     for (std::uint32_t i = 0; i < cells_.cells().size(); ++i) {
@@ -57,8 +58,8 @@ class CellLimit {
   [[nodiscard]] const std::optional<Eigen::Vector2d>& corner() const { return corner_; }
 
  private:
-  static constexpr double kShift = 1e-10;    // m: above roundings, far below what is measured
-  static constexpr double kSquare = 1e-9;    // the cosine of a right angle
+  static constexpr double kShift = 1e-10;  // m: above roundings, far below what is measured
+  static constexpr double kSquare = 1e-9;  // the cosine of a right angle
   static constexpr std::size_t kCellsTried = 12;
 
   /// A side of a divider that the cell needs. The patch is at most `high` beyond it.
@@ -116,8 +117,8 @@ class CellLimit {
   /// Ranges have no more than the Lipschitz bound where all of the patch is on one side.
   void sharpen(Need& need) const {
     if (ranges_->sides()[need.divider] == 0) return;
-    need.high = std::min(need.high, largest(linear_of(need), *polygon_) +
-                                        (need.sign > 0 ? model(need).above : model(need).below));
+    need.high = std::min(need.high,
+                         largest(linear_of(need), *polygon_) + (need.sign > 0 ? model(need).above : model(need).below));
   }
 
   /// Through the foot on the one divider that is not met.
@@ -143,7 +144,7 @@ class CellLimit {
     linear_.push_back(f);
     return one.high + kShift;
   }
-  [[nodiscard]] Model model(const Need& need) const { return model_of(divider(need), *patch_, 1); }
+  [[nodiscard]] Model model(const Need& need) const { return best_model_of(divider(need), *patch_); }
   [[nodiscard]] Linear linear_of(const Need& need) const {
     const Linear f = model(need).linear;
     return {need.sign * f.at, need.sign * f.du, need.sign * f.dv};
@@ -190,7 +191,7 @@ class CellLimit {
       if (n == on.size()) return kInfinity;
       on[n] = next;
       signs[n] = sign;
-      y = foot(solid_, x, on, n + 1);
+      y = foot(solid_.dividers(), x, on, n + 1);
       if (!y.allFinite()) return kInfinity;
     }
     Vector3d inward = Vector3d::Zero();

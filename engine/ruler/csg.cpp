@@ -11,6 +11,42 @@
 
 namespace verisim::ruler {
 
+namespace {
+
+/// In four parts: all of the plane of `middle` within the radius of its origin.
+void add_disc(std::vector<Face>& faces, Face middle, double radius) {
+  constexpr int kParts = 4;
+  middle.z = middle.x.cross(middle.y);
+  middle.is_polar = true;
+  middle.v_low = 0;
+  middle.v_high = radius;
+  for (int i = 0; i < kParts; ++i) {
+    middle.u_low = i * pinned::kFullTurn / kParts;
+    middle.u_high = (i + 1) * pinned::kFullTurn / kParts;
+    faces.push_back(middle);
+  }
+}
+
+/// The circle in which a round divider crosses a plane that its axis stands upright on.
+struct Circle {
+  Vector3d middle;
+  double radius;  ///< 0: there is none
+};
+
+Circle circle_on(const Face& face, const Divider& round) {
+  const double height = face.z.dot(round.point - face.origin);
+  const Vector3d middle = round.point - height * face.z;
+  if (round.kind == Divider::Kind::sphere)
+    return {middle, std::sqrt(std::max(0.0, round.radius * round.radius - height * height))};
+  if (round.kind == Divider::Kind::plane || round.axis.cross(face.z).norm() > 1e-9) return {middle, 0};
+  if (round.kind == Divider::Kind::cylinder) return {middle, round.radius};
+  if (round.kind == Divider::Kind::cone)
+    return {middle, std::max(0.0, -height * round.axis.dot(face.z)) * round.sine / round.cosine};
+  return {middle, std::abs(height) < round.radius ? round.ring + round.radius : 0};
+}
+
+}  // namespace
+
 /// Recursive descent over "difference(box(1,1,1),placed(0,0,0;0,0,0,1;cylinder(0.1,2)))".
 class CsgReader {
  public:
@@ -90,7 +126,7 @@ class CsgReader {
     std::uint32_t index = 0;
     const std::uint32_t node =
         divide({.kind = Divider::Kind::plane, .point = X * at, .axis = X.rotation * normal}, index);
-    if (a > 0 && b > 0)  // an apex has no disc
+    if (a > 0 && b > 0)
       csg_.faces_.push_back({index, X * at, X.rotation * x, X.rotation * y, X.rotation * normal, -a, a, -b, b});
     return node;
   }
@@ -107,7 +143,17 @@ class CsgReader {
   }
   std::uint32_t disc(const Pose& X, double z, double radius) {
     const Vector3d y = z > 0 ? Vector3d(Vector3d::UnitY()) : Vector3d(-Vector3d::UnitY());
-    return flat(X, {0, 0, z}, Vector3d::UnitX(), y, radius, radius);
+    const std::uint32_t node = flat(X, {0, 0, z}, Vector3d::UnitX(), y, 0, 0);
+    const Face middle{.divider = csg_.nodes_[index_below(node)].first,
+                      .origin = X * Vector3d(0, 0, z),
+                      .x = X.rotation * Vector3d::UnitX(),
+                      .y = X.rotation * y};
+    if (radius > 0) add_disc(csg_.faces_, middle, radius);  // an apex has no disc
+    return node;
+  }
+  /// A divider's own node: itself, or what a complement is of.
+  [[nodiscard]] std::uint32_t index_below(std::uint32_t node) const {
+    return csg_.nodes_[node].operation == Operation::complement ? csg_.nodes_[node].first : node;
   }
   std::uint32_t cylinder_side(const Pose& X, double radius, double height) {
     return round(X, {.kind = Divider::Kind::cylinder, .radius = radius}, -0.5 * height, 0.5 * height);
@@ -231,7 +277,7 @@ Ball around(const Face& face, const Divider& divider) {
   const double v = 0.5 * (face.v_low + face.v_high), half = 0.5 * (face.v_high - face.v_low);
   switch (divider.kind) {
     case Divider::Kind::plane:
-      return {face.origin, hypotenuse(face.u_high, face.v_high)};
+      return {face.origin, face.is_polar ? face.v_high : hypotenuse(face.u_high, face.v_high)};
     case Divider::Kind::sphere:
       return {face.origin, divider.radius};
     case Divider::Kind::cylinder:
@@ -249,6 +295,7 @@ Ball around(const Face& face, const Divider& divider) {
 Csg::Csg(std::string_view text) {
   CsgReader(text, *this).read();
   find_senses();
+  add_discs();
   for (const Face& face : faces_) middle_ += face.origin / static_cast<double>(faces_.size());
   for (const Face& face : faces_) {
     const Ball ball = around(face, dividers_[face.divider]);
@@ -302,6 +349,44 @@ int Csg::side(std::span<const std::int8_t> sides) const {
     }
   }
   return at.back();
+}
+
+/// Around holes and posts a plane is searched in polar coordinates, in which their rims are straight.
+void Csg::add_discs() {
+  constexpr double kSame = 1e-11, kBeyond = 1.5;  // how far around a rim
+  const std::size_t count = faces_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (dividers_[faces_[i].divider].kind != Divider::Kind::plane || faces_[i].is_polar) continue;
+    std::vector<Circle> circles;
+    for (const Divider& divider : dividers_) {
+      const Circle circle = circle_on(faces_[i], divider);
+      const Vector3d from = circle.middle - faces_[i].origin;
+      const bool is_beside = std::abs(from.dot(faces_[i].x)) > faces_[i].u_high + circle.radius ||
+                             std::abs(from.dot(faces_[i].y)) > faces_[i].v_high + circle.radius;
+      if (circle.radius == 0 || is_beside) continue;
+      const auto known = std::find_if(circles.begin(), circles.end(),
+                                      [&](const Circle& c) { return (c.middle - circle.middle).norm() < kSame; });
+      if (known == circles.end())
+        circles.push_back(circle);
+      else
+        known->radius = std::max(known->radius, circle.radius);
+    }
+    for (const Circle& circle : circles) {
+      const auto is_it = [&](const Face& face) {
+        return face.is_polar && face.divider == faces_[i].divider && (face.origin - circle.middle).norm() < kSame;
+      };
+      if (std::none_of(faces_.begin(), faces_.end(), is_it)) {
+        Face middle = faces_[i];
+        middle.origin = circle.middle;
+        middle.discs.clear();
+        add_disc(faces_, middle, 0);
+      }
+      faces_[i].discs.push_back(
+          static_cast<std::uint32_t>(std::find_if(faces_.begin(), faces_.end(), is_it) - faces_.begin()));
+      for (Face& face : faces_)
+        if (is_it(face)) face.v_high = std::max(face.v_high, kBeyond * circle.radius);
+    }
+  }
 }
 
 void Csg::find_senses() {

@@ -18,6 +18,7 @@ namespace verisim::ruler {
 
 /// A rectangle of parameters (u, v) on a divider; its x, y and z are directions of the solid's coordinates.
 ///   plane     origin + u x + v y                                        [m, m]
+///             is_polar: origin + v (cos u x + sin u y)                  [rad, m]
 ///   cylinder  origin + radius (cos u x + sin u y) + v z                 [rad, m]
 ///   cone      apex + v (sine (cos u x + sin u y) + cosine z)            [rad, m along the slant]
 ///   sphere    centre + radius (cos v (cos u x + sin u y) + sin v z)     [rad, rad]
@@ -27,6 +28,9 @@ struct Face {
   Vector3d origin = Vector3d::Zero();
   Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
   double u_low = 0, u_high = 0, v_low = 0, v_high = 0;
+  bool is_polar = false;
+  /// Of a plane: faces that cover all within their v_high of their origins, and so leave the rest to this one.
+  std::vector<std::uint32_t> discs{};
 };
 
 class Csg {
@@ -62,6 +66,7 @@ class Csg {
  private:
   friend class CsgReader;
   void find_senses();
+  void add_discs();
 
   std::vector<Node> nodes_;
   std::vector<Divider> dividers_;

@@ -1,8 +1,8 @@
 // A surface that divides space in two: plane, cylinder, cone, sphere, torus. What the solids of the ruler are made of.
 //
 // Signed distance g(x) [m], negative inside (below the plane, within the radius). It is never larger than the distance
-// to the surface, changes by at most 1 m per m, and has a unit gradient but on the axis, at the centre or on a torus' ring, where
-// `bend_radius` is 0. Written for the ruler alone: it shares no code with engine/geometry.
+// to the surface, changes by at most 1 m per m, and has a unit gradient but on the axis, at the centre or on a torus'
+// ring, where `bend_radius` is 0. Written for the ruler alone: it shares no code with engine/geometry.
 #pragma once
 
 #include <cmath>
@@ -30,8 +30,9 @@ struct Local {
                        ///< third_factor/bend_radius^2
 };
 
-/// Of a distance to a point or line the third derivative along a unit way is -3 c (1 - c^2)/r^2 at most, with its cosine
-/// c to the gradient: 2/sqrt(3). Of a torus, a distance of distances, the chain rule gives 2/sqrt(3) twice, and 3.
+/// Of a distance to a point or line the third derivative along a unit way is -3 c (1 - c^2)/r^2 at most, with its
+/// cosine c to the gradient: 2/sqrt(3). Of a torus, a distance of distances, the chain rule gives 2/sqrt(3) twice,
+/// and 3.
 [[nodiscard]] inline double third_factor(const Divider& divider) {
   constexpr double kOfDistance = 1.1548;
   return divider.kind == Divider::Kind::torus ? 2 * kOfDistance + 3 : kOfDistance;
@@ -49,7 +50,8 @@ struct Local {
 /// The second derivative of g along a and b at x. @pre local is local_at(divider, x)
 [[nodiscard]] double bend(const Divider& divider, const Vector3d& x, const Local& local, const Vector3d& a,
                           const Vector3d& b);
-/// The length of the part of a step that bends the divider: across the axis; of a sphere or torus all of it, of a plane nothing.
+/// The length of the part of a step that bends the divider: across the axis; of a sphere or torus all of it, of a plane
+/// nothing.
 [[nodiscard]] double across(const Divider& divider, const Vector3d& step);
 
 /// Is the straight way between any two points that are not above it not above it either?

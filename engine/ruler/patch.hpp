@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "engine/base/pinned_math.hpp"
 #include "engine/ruler/csg.hpp"
@@ -21,6 +22,16 @@ struct Piece {
   }
 };
 
+/// What a patch of a surface of revolution is around its axis; s goes around it, t along the meridian.
+struct Round {
+  Vector3d origin, axis;
+  double half_u = 0;        ///< rad, of the angle s
+  double rho_min = 0;       ///< m, least distance from the axis
+  double speed_v = 0;       ///< m, the derivative along t, at most
+  double bend_v = 0;        ///< m, the second one, at most; of an arc the third is bend_v^2 / speed_v
+  bool has_centre = false;  ///< a sphere's, at the origin
+};
+
 /// A piece as p(s, t), s and t in [-1, 1], to second order: middle + s a + t b + (s^2 aa + 2 s t ab + t^2 bb) / 2.
 /// Along any straight way from the middle to a point of the square, over a parameter from 0 to 1, no derivative is
 /// longer than `first`, `second` and `third` [m].
@@ -28,6 +39,8 @@ struct Patch {
   Vector3d middle, a, b;
   Vector3d aa = Vector3d::Zero(), ab = Vector3d::Zero(), bb = Vector3d::Zero();
   double first = 0, second = 0, third = 0;
+  Vector3d normal = Vector3d::Zero();  ///< unit, of a patch that bends within a plane; else zero
+  std::optional<Round> round{};
   [[nodiscard]] double radius() const { return first; }
   [[nodiscard]] double bent() const { return 0.5 * second; }
 };
@@ -36,7 +49,7 @@ struct Patch {
   const Face& face = solid.faces()[piece.face];
   const Divider& d = solid.dividers()[face.divider];
   const double u = piece.u, v = piece.v, hu = piece.half_u, hv = piece.half_v;
-  if (d.kind == Divider::Kind::plane)
+  if (d.kind == Divider::Kind::plane && !face.is_polar)
     return {.middle = face.origin + u * face.x + v * face.y,
             .a = hu * face.x,
             .b = hv * face.y,
@@ -45,6 +58,19 @@ struct Patch {
   const Vector3d on = pinned::cos(u) * face.y - pinned::sin(u) * face.x;
   const double r = d.radius;
   switch (d.kind) {
+    case Divider::Kind::plane: {
+      const double far = v + hv;  // m, from the middle
+      return {.middle = face.origin + v * out,
+              .a = hu * v * on,
+              .b = hv * out,
+              .aa = -v * hu * hu * out,
+              .ab = hu * hv * on,
+              .first = hypotenuse(far * hu, hv),
+              .second = 2 * hv * hu + far * hu * hu,
+              .third = 3 * hv * hu * hu + far * hu * hu * hu,
+              .normal = face.z,
+              .round = Round{face.origin, face.z, hu, v - hv, hv, 0}};
+    }
     case Divider::Kind::cylinder:
       return {.middle = face.origin + r * out + v * face.z,
               .a = hu * r * on,
@@ -52,7 +78,8 @@ struct Patch {
               .aa = -r * hu * hu * out,
               .first = hypotenuse(r * hu, hv),
               .second = r * hu * hu,
-              .third = r * hu * hu * hu};
+              .third = r * hu * hu * hu,
+              .round = Round{face.origin, face.z, hu, r, hv, 0}};
     case Divider::Kind::cone: {
       const double far = (v + hv) * d.sine;  // m, largest radius
       const Vector3d along = d.sine * out + d.cosine * face.z;
@@ -63,7 +90,8 @@ struct Patch {
               .ab = hu * hv * d.sine * on,
               .first = hypotenuse(far * hu, hv),
               .second = 2 * hv * hu * d.sine + far * hu * hu,
-              .third = 3 * hv * hu * hu * d.sine + far * hu * hu * hu};
+              .third = 3 * hv * hu * hu * d.sine + far * hu * hu * hu,
+              .round = Round{face.origin, face.z, hu, (v - hv) * d.sine, hv, 0}};
     }
     case Divider::Kind::torus: {
       const double c = pinned::cos(v), s = pinned::sin(v);
@@ -78,8 +106,8 @@ struct Patch {
               .bb = -r * hv * hv * normal,
               .first = hypotenuse(far * hu, r * hv),
               .second = far * hu * hu + r * (2 * s_max * hu * hv + hv * hv),
-              .third = far * hu * hu * hu +
-                       r * (3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv)};
+              .third = far * hu * hu * hu + r * (3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv),
+              .round = Round{face.origin, face.z, hu, d.ring + r * std::max(-1.0, c - hv), r * hv, r * hv * hv}};
     }
     default: {
       const double c = pinned::cos(v), s = pinned::sin(v);
@@ -93,7 +121,8 @@ struct Patch {
               .bb = -r * hv * hv * normal,
               .first = r * hypotenuse(c_max * hu, hv),
               .second = r * (c_max * hu * hu + 2 * s_max * hu * hv + hv * hv),
-              .third = r * (c_max * hu * hu * hu + 3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv)};
+              .third = r * (c_max * hu * hu * hu + 3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv),
+              .round = Round{face.origin, face.z, hu, r * std::max(0.0, c - hv), r * hv, r * hv * hv, true}};
     }
   }
 }
@@ -105,10 +134,18 @@ struct Model {
   [[nodiscard]] Model operator-() const { return {{-linear.at, -linear.du, -linear.dv}, below, above}; }
 };
 
+/// Of a plane on a patch of a plane: how the patch bends matters as far as it goes across the other.
+[[nodiscard]] inline Model model_of_planes(const Divider& divider, const Patch& patch, Model model) {
+  const double slope = patch.normal.cross(divider.axis).norm();
+  model.above = model.below = slope * patch.bent();
+  return model;
+}
+
 [[nodiscard]] inline Model model_of(const Divider& divider, const Patch& patch, double sign) {
   const Local local = local_at(divider, patch.middle);
   Model model{{sign * local.value, sign * local.gradient.dot(patch.a), sign * local.gradient.dot(patch.b)}};
   const bool is_plane = divider.kind == Divider::Kind::plane;
+  if (is_plane && patch.normal != Vector3d::Zero()) return model_of_planes(divider, patch, model);
   const double wide = is_plane ? 0 : across(divider, patch.a) + across(divider, patch.b) + patch.bent();
   // Value and linear model each change by no more than the way.
   model.above = model.below = 2 * patch.first;

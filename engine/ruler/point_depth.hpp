@@ -28,7 +28,7 @@ class PointDepth {
     std::sort(order_.begin(), order_.end());
     for (const auto& [distance, i] : order_) {
       if (distance >= least_) break;
-      if (is_own({{i}}, 1, foot(csg_, x, {{i}}, 1)))
+      if (is_own({{i}}, 1, foot(csg_.dividers(), x, {{i}}, 1)))
         least_ = distance;
       else
         near_.push_back(i);
@@ -81,7 +81,7 @@ class PointDepth {
       }
   }
   void meet(const Vector3d& x, const Set& set, std::size_t n) {
-    const Vector3d y = foot(csg_, x, set, n);
+    const Vector3d y = foot(csg_.dividers(), x, set, n);
     const double distance = (y - x).norm();
     if (distance < least_ && is_own(set, n, y)) least_ = distance;
   }

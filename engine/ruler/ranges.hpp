@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/ruler/patch.hpp"
+#include "engine/ruler/coaxial.hpp"
 #include "engine/ruler/values.hpp"
 
 namespace verisim::ruler {
@@ -27,7 +27,7 @@ class Ranges {
       low_[i] = values[i] - radius;
       high_[i] = values[i] + radius;
       if (low_[i] <= 0 && high_[i] >= 0) {
-        models_[i] = model_of(csg_.dividers()[i], patch, 1);
+        models_[i] = best_model_of(csg_.dividers()[i], patch);
         const double wide = std::abs(models_[i].linear.du) + std::abs(models_[i].linear.dv);
         low_[i] = std::max(low_[i], models_[i].linear.at - wide - models_[i].below);
         high_[i] = std::min(high_[i], models_[i].linear.at + wide + models_[i].above);

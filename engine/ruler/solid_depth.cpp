@@ -19,8 +19,15 @@ namespace {
 class Search {
  public:
   Search(const Csg& a, const Csg& b, const Accuracy& accuracy)
-      : a_(a), b_(b), search_(accuracy), values_a_(a), values_b_(b), point_depth_(b), ranges_a_(a),
-        ranges_b_(b), cell_limit_(b) {}
+      : a_(a),
+        b_(b),
+        search_(accuracy),
+        values_a_(a),
+        values_b_(b),
+        point_depth_(b),
+        ranges_a_(a),
+        ranges_b_(b),
+        cell_limit_(b) {}
 
   Depth run() {
     for (std::uint32_t i = 0; i < a_.faces().size(); ++i) {
@@ -71,6 +78,7 @@ class Search {
   double limit_of(const Piece& piece) {
     const Patch patch = patch_of(a_, piece);
     const double radius = patch.radius();
+    if (is_covered(piece, patch)) return 0;
     values_b_.at(patch.middle);
     const double tree_b = values_b_.tree();
     if (tree_b >= radius) return 0;
@@ -98,6 +106,15 @@ class Search {
     limit = by_two_at_once(proven, limit);
     if (limit > search_.enough() && !likely.is_empty()) look_at(own, patch, likely);
     return limit;
+  }
+
+  /// By discs of the same plane.
+  [[nodiscard]] bool is_covered(const Piece& piece, const Patch& patch) const {
+    const auto& discs = a_.faces()[piece.face].discs;
+    return std::any_of(discs.begin(), discs.end(), [&](std::uint32_t i) {
+      const Face& disc = a_.faces()[i];
+      return (disc.origin - patch.middle).norm() + patch.radius() <= disc.v_high;
+    });
   }
 
   /// 0 if A's surface can pass through the patch, on the divider `own`; else both sides of it are inside or outside.
@@ -157,8 +174,7 @@ class Search {
     std::sort(depths.begin(), depths.end(), [](const Linear& f, const Linear& g) { return f.at < g.at; });
     const std::size_t n = std::min<std::size_t>(depths.size(), 3);
     for (std::size_t i = 0; i < n && limit > search_.enough(); ++i)
-      for (std::size_t j = i + 1; j < n; ++j)
-        limit = std::min(limit, largest_of_lesser(depths[i], depths[j], proven));
+      for (std::size_t j = i + 1; j < n; ++j) limit = std::min(limit, largest_of_lesser(depths[i], depths[j], proven));
     return limit;
   }
 

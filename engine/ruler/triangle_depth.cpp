@@ -67,12 +67,18 @@ class TriangleSearch {
   TriangleSearch(const Triangles& b, const Accuracy& accuracy) : b_(b), search_(accuracy) {}
 
   Depth run(const Triangles& a, const Pose& X_BA) {
-    for (std::uint32_t i = 0; i < a.size(); ++i) {
+    const auto is_outside = [&](const Vector3d& middle, double radius) {
+      const Vector3d x = X_BA * middle;
+      if (b_.bounds().squaredExteriorDistance(x) > radius * radius) return true;
+      return b_.nearest(x).distance > radius && !b_.is_inside(x);
+    };
+    const auto add_triangle = [&](std::uint32_t i) {
       TrianglePiece piece{a.corners(i)};
       Eigen::AlignedBox3d box;
       for (Vector3d& corner : piece.corners) box.extend(corner = X_BA * corner);
       if (box.intersects(b_.bounds())) add(piece);
-    }
+    };
+    a.each(is_outside, add_triangle);
     return search_.run([&](const TrianglePiece& piece) { split(piece); });
   }
 

@@ -28,6 +28,16 @@ class Triangles {
   [[nodiscard]] double distance(const Vector3d& x, std::uint32_t triangle) const;
   [[nodiscard]] std::size_t size() const { return triangles_.size(); }
   [[nodiscard]] std::array<Vector3d, 3> corners(std::uint32_t triangle) const;
+  /// `act(triangle)` of every triangle, but those of whose balls `skip(middle, radius)` says to leave them out.
+  template <typename Skip, typename Act>
+  void each(const Skip& skip, const Act& act, std::uint32_t box = 0) const {
+    const Box& here = boxes_[box];
+    if (skip(here.bounds.center(), 0.5 * here.bounds.diagonal().norm())) return;
+    for (std::uint32_t i = 0; i < here.count; ++i) act(order_[here.first + i]);
+    if (here.count > 0) return;
+    each(skip, act, here.first);
+    each(skip, act, here.first + 1);
+  }
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return boxes_.front().bounds; }
 
  private:
