@@ -82,11 +82,10 @@ class CellLimit {
     if (open_.size() == 1) {
       found = of_one(open_[0]);
       if (found < kInfinity) return found;
+      for (const Need& need : met_)
+        if (need.high + open_[0].high > -kOnSurface) found = std::min(found, of_edge(open_[0], need));
     }
-    if (open_.size() == 2 && is_square(open_[0], open_[1])) {
-      const double far = hypotenuse(open_[0].high, open_[1].high) * (1 + kSquare);
-      if (far <= reach_ && are_met_within(far)) found = far + kShift;
-    }
+    if (open_.size() == 2) found = of_edge(open_[0], open_[1]);
     return std::min(found, of_corners(cell, std::min(limit, found)));
   }
 
@@ -99,6 +98,34 @@ class CellLimit {
     if ((is_plane(a) && is_cylinder(b)) || (is_cylinder(a) && is_plane(b)))
       return divider(a).axis.cross(divider(b).axis).norm() < kSquare;
     return false;
+  }
+  /// The cosine between the gradients of two that cross at the same angle everywhere.
+  [[nodiscard]] std::optional<double> cosine_between(const Need& a, const Need& b) const {
+    const double sign = a.sign * b.sign;
+    const Divider &g = divider(a), &h = divider(b);
+    if (is_plane(a) && is_plane(b)) return sign * g.axis.dot(h.axis);
+    if (is_square(a, b)) return 0;
+    const bool is_upright = g.axis.cross(h.axis).norm() < kSquare;
+    if (is_upright && is_plane(a) && h.kind == Divider::Kind::cone) return -sign * h.sine * g.axis.dot(h.axis);
+    if (is_upright && is_plane(b) && g.kind == Divider::Kind::cone) return -sign * g.sine * g.axis.dot(h.axis);
+    return {};
+  }
+  /// The distance to the edge of two: in the plane of both gradients, two lines that cross.
+  [[nodiscard]] double of_edge(const Need& a, const Need& b) const {
+    const std::optional<double> cosine = cosine_between(a, b);
+    if (!cosine || std::abs(*cosine) > 0.99) return kInfinity;
+    const double u = std::max(0.0, a.high), v = std::max(0.0, b.high), c = *cosine;
+    const double far = std::sqrt((u * u + v * v + 2 * std::abs(c) * u * v) / (1 - c * c)) * (1 + kSquare);
+    if (far > reach_) return kInfinity;
+    for (const Need* need : {&a, &b}) {
+      if (is_plane(*need)) continue;  // not across the axis
+      if (local_at(divider(*need), patch_->middle).bend_radius - patch_->first < 2 * far) return kInfinity;
+    }
+    for (const Need& need : met_) {
+      if (need.divider == a.divider || need.divider == b.divider || need.high + far <= -kOnSurface) continue;
+      if (need.high > kOnSurface || !is_square(need, a) || !is_square(need, b)) return kInfinity;
+    }
+    return far + kShift;
   }
   /// Is every point that is no farther than `way` from the patch on the sides that are met?
   [[nodiscard]] bool are_met_within(double way) const {

@@ -99,10 +99,15 @@ class Search {
       ranges_b_.narrow(proven);
     }
     if (b_.side(ranges_b_.sides()) > 0) return 0;
-    // A point may be as deep as the middle and as it is far from there.
-    const double at_middle = tree_b > 0 ? -tree_b : point_depth_(patch.middle);
-    double limit = at_middle + radius;
-    limit = cell_limit_(patch, proven, ranges_b_, values_b_, std::max(at_middle, 0.0) + 2 * radius, limit);
+    double limit = tree_b > 0 ? radius - tree_b : kInfinity;
+    // A point may be as deep as the middle of what is left and as it is far from there.
+    const auto [middle, left] = ball_around(patch, proven);
+    values_b_.at(middle);
+    const double tree = values_b_.tree();
+    if (tree >= left) return 0;
+    const double at_middle = tree > 0 ? -tree : point_depth_(middle);
+    limit = std::min(limit, at_middle + left);
+    limit = cell_limit_(patch, proven, ranges_b_, values_b_, std::max(at_middle, 0.0) + 2 * left, limit);
     limit = by_two_at_once(proven, limit);
     if (limit > search_.enough() && !likely.is_empty()) look_at(own, patch, likely);
     return limit;
@@ -115,6 +120,19 @@ class Search {
       const Face& disc = a_.faces()[i];
       return (disc.origin - patch.middle).norm() + patch.radius() <= disc.v_high;
     });
+  }
+
+  /// Around all points of the patch that belong to the polygon.
+  static std::pair<Vector3d, double> ball_around(const Patch& patch, const Polygon& polygon) {
+    const auto at = [&](const Eigen::Vector2d& p) {
+      return Vector3d(patch.middle + p.x() * patch.a + p.y() * patch.b);
+    };
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& p : polygon.corners()) middle += p;
+    middle /= static_cast<double>(polygon.corners().size());
+    double radius = 0;
+    for (const Eigen::Vector2d& p : polygon.corners()) radius = std::max(radius, (at(p) - at(middle)).norm());
+    return {at(middle), radius + patch.bent()};
   }
 
   /// 0 if A's surface can pass through the patch, on the divider `own`; else both sides of it are inside or outside.

@@ -24,7 +24,7 @@ struct AnyPiece {
 };
 
 TEST(OverlapDeathTest, NeedsShapesWithAnInsideAndPlacements) {
-  const ruler::Shape ball = ruler::test::shape("sphere(0.01)"), open({{"open", "", {}}});
+  const ruler::Shape ball = ruler::test::shape("sphere(0.01)"), open(std::vector<ruler::PartData>{{"open", "", {}}});
   EXPECT_BROKEN(ruler::overlap(ball, Pose(), open, Pose()), "why_not(a, b).empty()");
   for (const Pose& X : {kStretched, kNowhere}) {
     EXPECT_BROKEN(ruler::overlap(ball, X, ball, Pose()), "is_placement(X_WA)");

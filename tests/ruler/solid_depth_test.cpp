@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 #include "tests/length.hpp"
 #include "tests/ruler/shapes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -102,7 +103,7 @@ TEST(SolidDepth, OfATorusInAPlaneIsHowFarItReachesBelow) {
     for (const double tilt : {0.0, 0.3, 0.25 * pinned::kFullTurn}) {
       const double lowest = 0.01 * pinned::sin(tilt) + 0.004;
       const Overlap found = of(ring, at(0.001, 0.002, lowest - d, {tilt, 0, 0}), plate);
-      expect_depth(found, d, 2e-3 * d + 2e-9);
+      expect_depth(found, d, 2e-3 * d + (tilt == 0 ? 1e-7 : 2e-9));  // as deep all around: more to search
     }
   }
 }

@@ -21,6 +21,8 @@
 namespace verisim::triangle_depth_test {
 namespace {
 
+using drops::operator+;
+using drops::operator-;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<Mesh>>>;
@@ -84,10 +86,10 @@ TEST(TriangleDepth, AndSolidDepthAgreeWithDenselySampledTriangles) {
   const ruler::Accuracy accuracy{.absolute = 1e-5, .relative = 0.01, .pieces_max = 4000};
   const RandomStream random(1, "against CGAL");
   std::uint64_t deep = 0;
-  const auto count = test::by_length<std::uint64_t>(8, 121, 484);
+  const auto count = test::by_length<std::uint64_t>(8, 44, 484);
   for (std::uint64_t i = 0; i < count; ++i) {
     SCOPED_TRACE(i);
-    const std::size_t a = i % solids.size(), b = (i / solids.size()) % solids.size();
+    const std::size_t a = i % solids.size(), b = (i / solids.size() + 2 * i) % solids.size();
     const Pose X_BA = ruler::test::random_pose(random, 100 * i, 0.015);
     const double sampled = densely(parts[a].mesh, X_BA, *judges[b], kSpacing);
     const ruler::Triangles first(parts[a].mesh.vertices, parts[a].mesh.triangles);
