@@ -62,6 +62,12 @@ struct Replay {
   bool verify = false, measure = false;
 };
 
+std::vector<MeasuredPair> measured(const Replay& asked, const RunFile& file, std::vector<MeasuredBody> bodies,
+                                   const SimulateOptions& o) {
+  if (!asked.measure) return {};
+  return measure_run(file, std::move(bodies), ProgressLine(!o.quiet));
+}
+
 void tell(const Replay& asked, const RunFile& file, const std::string& hash, const std::vector<MeasuredPair>& measured,
           const SimulateOptions& o) {
   if (o.json) {
@@ -141,9 +147,7 @@ int replay(const Replay& asked, const SimulateOptions& o) {
     differs(difference_in_summary(file, session));
     if (!altered.empty()) differs(altered.front());
   }
-  std::vector<MeasuredPair> measured;
-  if (asked.measure) measured = measure_run(file, std::move(bodies), ProgressLine(!o.quiet));
-  tell(asked, file, hash, measured, o);
+  tell(asked, file, hash, measured(asked, file, std::move(bodies), o), o);
   return 0;
 }
 

@@ -45,86 +45,78 @@ struct Patch {
   [[nodiscard]] double bent() const { return 0.5 * second; }
 };
 
+/// Directions from a face's axis at the middle of a piece: out, and on around it.
+struct Around {
+  Vector3d out, on;
+};
+
+/// Of a cone from its apex; of half a right angle twice, a plane in polar coordinates.
+[[nodiscard]] inline Patch cone_patch(const Face& face, const Piece& piece, const Around& at, double sine,
+                                      double cosine) {
+  const double v = piece.v, hu = piece.half_u, hv = piece.half_v;
+  const double far = (v + hv) * sine;  // m, largest radius
+  const Vector3d along = sine * at.out + cosine * face.z;
+  return {.middle = face.origin + v * along,
+          .a = hu * v * sine * at.on,
+          .b = hv * along,
+          .aa = -v * sine * hu * hu * at.out,
+          .ab = hu * hv * sine * at.on,
+          .first = hypotenuse(far * hu, hv),
+          .second = 2 * hv * hu * sine + far * hu * hu,
+          .third = 3 * hv * hu * hu * sine + far * hu * hu * hu,
+          .normal = face.is_polar ? face.z : Vector3d(Vector3d::Zero()),
+          .round = Round{face.origin, face.z, hu, (v - hv) * sine, hv, 0}};
+}
+
+/// Of a torus; of one without a ring, a sphere.
+[[nodiscard]] inline Patch tube_patch(const Face& face, const Piece& piece, const Around& at, double ring, double r) {
+  const double v = piece.v, hu = piece.half_u, hv = piece.half_v;
+  const double c = pinned::cos(v), s = pinned::sin(v);
+  const double c_max = std::min(1.0, std::abs(c) + hv), s_max = std::min(1.0, std::abs(s) + hv);
+  const double far = ring + r * std::min(1.0, c + hv), rho = ring + r * c;  // m, from the axis
+  const double rho_min = std::max(0.0, ring + r * std::max(-1.0, c - hv));
+  const Vector3d normal = c * at.out + s * face.z;
+  return {.middle = face.origin + ring * at.out + r * normal,
+          .a = hu * rho * at.on,
+          .b = hv * r * (c * face.z - s * at.out),
+          .aa = -rho * hu * hu * at.out,
+          .ab = -r * s * hu * hv * at.on,
+          .bb = -r * hv * hv * normal,
+          .first = hypotenuse(far * hu, r * hv),
+          .second = far * hu * hu + r * (2 * s_max * hu * hv + hv * hv),
+          .third = far * hu * hu * hu + r * (3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv),
+          .round = Round{face.origin, face.z, hu, rho_min, r * hv, r * hv * hv, ring == 0}};
+}
+
 [[nodiscard]] inline Patch patch_of(const Csg& solid, const Piece& piece) {
   const Face& face = solid.faces()[piece.face];
   const Divider& d = solid.dividers()[face.divider];
   const double u = piece.u, v = piece.v, hu = piece.half_u, hv = piece.half_v;
-  if (d.kind == Divider::Kind::plane && !face.is_polar)
-    return {.middle = face.origin + u * face.x + v * face.y,
-            .a = hu * face.x,
-            .b = hv * face.y,
-            .first = hypotenuse(hu, hv)};
-  const Vector3d out = pinned::cos(u) * face.x + pinned::sin(u) * face.y;
-  const Vector3d on = pinned::cos(u) * face.y - pinned::sin(u) * face.x;
-  const double r = d.radius;
+  const Around at{pinned::cos(u) * face.x + pinned::sin(u) * face.y, pinned::cos(u) * face.y - pinned::sin(u) * face.x};
   switch (d.kind) {
-    case Divider::Kind::plane: {
-      const double far = v + hv;  // m, from the middle
-      return {.middle = face.origin + v * out,
-              .a = hu * v * on,
-              .b = hv * out,
-              .aa = -v * hu * hu * out,
-              .ab = hu * hv * on,
-              .first = hypotenuse(far * hu, hv),
-              .second = 2 * hv * hu + far * hu * hu,
-              .third = 3 * hv * hu * hu + far * hu * hu * hu,
-              .normal = face.z,
-              .round = Round{face.origin, face.z, hu, v - hv, hv, 0}};
-    }
+    case Divider::Kind::plane:
+      if (face.is_polar) return cone_patch(face, piece, at, 1, 0);
+      return {.middle = face.origin + u * face.x + v * face.y,
+              .a = hu * face.x,
+              .b = hv * face.y,
+              .first = hypotenuse(hu, hv)};
     case Divider::Kind::cylinder:
-      return {.middle = face.origin + r * out + v * face.z,
-              .a = hu * r * on,
+      return {.middle = face.origin + d.radius * at.out + v * face.z,
+              .a = hu * d.radius * at.on,
               .b = hv * face.z,
-              .aa = -r * hu * hu * out,
-              .first = hypotenuse(r * hu, hv),
-              .second = r * hu * hu,
-              .third = r * hu * hu * hu,
-              .round = Round{face.origin, face.z, hu, r, hv, 0}};
-    case Divider::Kind::cone: {
-      const double far = (v + hv) * d.sine;  // m, largest radius
-      const Vector3d along = d.sine * out + d.cosine * face.z;
-      return {.middle = face.origin + v * along,
-              .a = hu * v * d.sine * on,
-              .b = hv * along,
-              .aa = -v * d.sine * hu * hu * out,
-              .ab = hu * hv * d.sine * on,
-              .first = hypotenuse(far * hu, hv),
-              .second = 2 * hv * hu * d.sine + far * hu * hu,
-              .third = 3 * hv * hu * hu * d.sine + far * hu * hu * hu,
-              .round = Round{face.origin, face.z, hu, (v - hv) * d.sine, hv, 0}};
-    }
-    case Divider::Kind::torus: {
-      const double c = pinned::cos(v), s = pinned::sin(v);
-      const double c_max = std::min(1.0, std::abs(c) + hv), s_max = std::min(1.0, std::abs(s) + hv);
-      const double far = d.ring + r * std::min(1.0, c + hv), rho = d.ring + r * c;  // m, from the axis
-      const Vector3d normal = c * out + s * face.z;
-      return {.middle = face.origin + d.ring * out + r * normal,
-              .a = hu * rho * on,
-              .b = hv * r * (c * face.z - s * out),
-              .aa = -rho * hu * hu * out,
-              .ab = -r * s * hu * hv * on,
-              .bb = -r * hv * hv * normal,
-              .first = hypotenuse(far * hu, r * hv),
-              .second = far * hu * hu + r * (2 * s_max * hu * hv + hv * hv),
-              .third = far * hu * hu * hu + r * (3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv),
-              .round = Round{face.origin, face.z, hu, d.ring + r * std::max(-1.0, c - hv), r * hv, r * hv * hv}};
-    }
-    default: {
-      const double c = pinned::cos(v), s = pinned::sin(v);
-      const double c_max = std::min(1.0, c + hv), s_max = std::min(1.0, std::abs(s) + hv);
-      const Vector3d normal = c * out + s * face.z;
-      return {.middle = face.origin + r * normal,
-              .a = hu * r * c * on,
-              .b = hv * r * (c * face.z - s * out),
-              .aa = -r * c * hu * hu * out,
-              .ab = -r * s * hu * hv * on,
-              .bb = -r * hv * hv * normal,
-              .first = r * hypotenuse(c_max * hu, hv),
-              .second = r * (c_max * hu * hu + 2 * s_max * hu * hv + hv * hv),
-              .third = r * (c_max * hu * hu * hu + 3 * s_max * hu * hu * hv + 3 * c_max * hu * hv * hv + hv * hv * hv),
-              .round = Round{face.origin, face.z, hu, r * std::max(0.0, c - hv), r * hv, r * hv * hv, true}};
-    }
+              .aa = -d.radius * hu * hu * at.out,
+              .first = hypotenuse(d.radius * hu, hv),
+              .second = d.radius * hu * hu,
+              .third = d.radius * hu * hu * hu,
+              .round = Round{face.origin, face.z, hu, d.radius, hv, 0}};
+    case Divider::Kind::cone:
+      return cone_patch(face, piece, at, d.sine, d.cosine);
+    case Divider::Kind::sphere:
+      return tube_patch(face, piece, at, 0, d.radius);
+    case Divider::Kind::torus:
+      break;
   }
+  return tube_patch(face, piece, at, d.ring, d.radius);
 }
 
 /// A divider's value on a patch, times a sign: no more than linear + above, no less than linear - below.
