@@ -48,7 +48,7 @@ class Lifter {
     std::vector<Divider> dividers;
     for (const std::uint32_t face : faces) dividers.push_back(*part_.faces[face]);
     for (std::size_t n = std::min<std::size_t>(dividers.size(), 3); n > 0; --n) {
-      const Vector3d y = foot(dividers, x, {0, 1, 2}, n);
+      Vector3d y = foot(dividers, x, {0, 1, 2}, n);
       if (y.allFinite() && (y - x).norm() <= near) return y;
     }
     return x;
