@@ -15,7 +15,15 @@ namespace {
 using nlohmann::ordered_json;
 
 const char* name_of(ruler::Source source) {
-  return source == ruler::Source::solids ? "solids" : "triangles";
+  switch (source) {
+    case ruler::Source::solids:
+      return "solids";
+    case ruler::Source::triangles:
+      return "triangles";
+    case ruler::Source::surfaces:
+      break;
+  }
+  return "surfaces";
 }
 
 template <typename T>
@@ -41,31 +49,78 @@ std::vector<Pose> poses_of(const RunFile& file, const std::string& body) {
   return poses;
 }
 
-void measure_pair(const RunFile& file, const MeasuredBody& a, const MeasuredBody& b, MeasuredPair& pair) {
-  const std::vector<Pose> X_WA = poses_of(file, a.name), X_WB = poses_of(file, b.name);
-  for (std::size_t frame = 0; frame < file.rows(); ++frame) {
-    const ruler::Overlap found = ruler::overlap(a.shape, X_WA[frame], b.shape, X_WB[frame]);
-    pair.overlap.push_back(found.depth);
-    pair.bound.push_back(found.bound);
-    pair.source = found.source;
+/// One after the other. What was found holds for a later frame too, but for how far the bodies have moved since.
+class Follower {
+ public:
+  Follower(const MeasuredBody& a, const MeasuredBody& b, bool by_surfaces)
+      : a_(a.shape), b_(b.shape), by_surfaces_(by_surfaces) {}
+
+  ruler::Overlap at(const Pose& X_WA, const Pose& X_WB) {
+    const Pose X_BA = X_WB.inverse() * X_WA;
+    if (is_known_) {
+      const double move = ruler::largest_move(a_, X_BA_, X_BA);
+      ruler::Overlap found = found_;
+      found.depth = std::max(0.0, found_.depth - move);
+      found.bound = found_.depth + found_.bound + move - found.depth;
+      if (found.bound <= std::max(accuracy_.absolute, accuracy_.relative * found.depth)) return found;
+    }
+    is_known_ = true;
+    X_BA_ = X_BA;
+    found_ = by_surfaces_ ? ruler::overlap_of_surfaces(a_, X_WA, b_, X_WB, accuracy_)
+                          : ruler::overlap(a_, X_WA, b_, X_WB, accuracy_);
+    return found_;
   }
+
+ private:
+  const ruler::Shape& a_;
+  const ruler::Shape& b_;
+  bool by_surfaces_;
+  ruler::Accuracy accuracy_;
+  bool is_known_ = false;
+  Pose X_BA_;
+  ruler::Overlap found_;
+};
+
+MeasuredPair::Measured measured(const RunFile& file, const MeasuredBody& a, const MeasuredBody& b, bool by_surfaces,
+                                const ProgressLine& line) {
+  constexpr std::size_t kFramesPerLine = 20;
+  const std::vector<Pose> X_WA = poses_of(file, a.name), X_WB = poses_of(file, b.name);
+  if (X_WA.size() != file.rows() || X_WB.size() != file.rows())
+    fail(ErrorKind::input, "'{}' or '{}' has not a pose in every frame", shown(a.name), shown(b.name));
+  MeasuredPair::Measured result;
+  Follower follower(a, b, by_surfaces);
+  for (std::size_t frame = 0; frame < file.rows(); ++frame) {
+    if (line.is_shown() && frame % kFramesPerLine == 0)
+      line.say(fmt::format("{:.18} ~ {:.18}: frame {} of {}", shown(a.name), shown(b.name), frame, file.rows()));
+    const ruler::Overlap found = follower.at(X_WA[frame], X_WB[frame]);
+    result.overlap.push_back(found.depth);
+    result.bound.push_back(found.bound);
+    result.source = found.source;
+  }
+  return result;
 }
 
 std::size_t largest(const std::vector<double>& values) {
   return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
 }
 
-std::size_t largest_difference(const MeasuredPair& pair) {
+std::size_t largest_difference(const MeasuredPair& pair, const MeasuredPair::Measured& by) {
   std::size_t worst = 0;
   for (std::size_t i = 1; i < pair.recorded.size(); ++i)
-    if (std::abs(pair.difference(i)) > std::abs(pair.difference(worst))) worst = i;
+    if (std::abs(pair.difference(by, i)) > std::abs(pair.difference(by, worst))) worst = i;
   return worst;
+}
+/// The frame of the line at the end: by what the pair was measured first.
+std::size_t largest_difference(const MeasuredPair& pair) {
+  return largest_difference(pair, pair.measured.front());
 }
 
 /// The pair that differs most, or nothing.
 const MeasuredPair* worst_of(const std::vector<MeasuredPair>& pairs) {
   const MeasuredPair* worst = nullptr;
-  const auto by = [](const MeasuredPair& pair) { return std::abs(pair.difference(largest_difference(pair))); };
+  const auto by = [](const MeasuredPair& pair) {
+    return std::abs(pair.difference(pair.measured.front(), largest_difference(pair)));
+  };
   for (const MeasuredPair& pair : pairs)
     if (!pair.recorded.empty() && (worst == nullptr || by(pair) > by(*worst))) worst = &pair;
   return worst;
@@ -83,17 +138,17 @@ std::vector<MeasuredBody> measured_bodies(const Scene& scene) {
   return bodies;
 }
 
-double MeasuredPair::difference(std::size_t frame) const {
+double MeasuredPair::difference(const Measured& by, std::size_t frame) const {
   VERISIM_ASSERT(frame < recorded.size());
-  const double low = overlap[frame], high = overlap[frame] + bound[frame];
+  const double low = by.overlap[frame], high = by.overlap[frame] + by.bound[frame];
   return recorded[frame] < low ? low - recorded[frame] : std::min(0.0, high - recorded[frame]);
 }
 
-std::vector<MeasuredPair> measure_run(const RunFile& file, const std::vector<MeasuredBody>& bodies) {
+std::vector<MeasuredPair> measure_run(const RunFile& file, std::vector<MeasuredBody> bodies, const ProgressLine& line) {
   const auto frames = values_of<std::uint32_t>(file, file.schema().table(), "/state/links/frame");
   const auto numbers = values_of<std::uint32_t>(file, file.schema().table(), "/state/links/pair");
   const auto depths = values_of<double>(file, file.schema().table(), "/state/links/max_penetration");
-  const auto body = [&](const std::string& name) -> const MeasuredBody& {
+  const auto body = [&](const std::string& name) -> MeasuredBody& {
     const auto found =
         std::find_if(bodies.begin(), bodies.end(), [&](const MeasuredBody& b) { return b.name == name; });
     if (found == bodies.end())
@@ -105,11 +160,16 @@ std::vector<MeasuredPair> measure_run(const RunFile& file, const std::vector<Mea
     MeasuredPair pair;
     pair.first = first;
     pair.second = second;
-    const MeasuredBody& a = body(first);
-    const MeasuredBody& b = body(second);
+    MeasuredBody& a = body(first);
+    MeasuredBody& b = body(second);
     pair.why_not = ruler::why_not(a.shape, b.shape);
     if (pair.why_not.empty()) {
-      measure_pair(file, a, b, pair);
+      pair.measured.push_back(measured(file, a, b, false, line));
+      if (ruler::has_surfaces(a.shape, b.shape)) {
+        a.shape.lift();
+        b.shape.lift();
+        pair.measured.push_back(measured(file, a, b, true, line));
+      }
       pair.recorded.assign(file.rows() > 0 ? file.rows() - 1 : 0, 0);
     }
     pairs.push_back(std::move(pair));
@@ -137,17 +197,19 @@ std::string table_of(const std::vector<MeasuredPair>& pairs) {
       text += fmt::format("{:<28} not measured: the run has fewer than two frames\n", name);
       continue;
     }
-    const std::size_t deepest = largest(pair.overlap), recorded = largest(pair.recorded),
-                      differ = largest_difference(pair);
-    text += fmt::format("{:<28} {:>9} {:>8.2f} {:>9.2f} {:>6} {:>9.2f} {:>7} {:>9.2f} {:>7}\n", name,
-                        name_of(pair.source), pair.overlap[deepest] * 1e6, pair.bound[deepest] * 1e6, deepest,
-                        pair.recorded[recorded] * 1e6, recorded, pair.difference(differ) * 1e6, differ);
+    const std::size_t recorded = largest(pair.recorded);
+    for (const MeasuredPair::Measured& by : pair.measured) {
+      const std::size_t deepest = largest(by.overlap), differ = largest_difference(pair, by);
+      text += fmt::format("{:<28} {:>9} {:>8.2f} {:>9.2f} {:>6} {:>9.2f} {:>7} {:>9.2f} {:>7}\n", name,
+                          name_of(by.source), by.overlap[deepest] * 1e6, by.bound[deepest] * 1e6, deepest,
+                          pair.recorded[recorded] * 1e6, recorded, pair.difference(by, differ) * 1e6, differ);
+    }
   }
   if (const MeasuredPair* worst = worst_of(pairs)) {
     const std::size_t frame = largest_difference(*worst);
-    text +=
-        fmt::format("largest difference: {} ~ {}, frame {}: {:.2f} um recorded, {:.2f} um true\n", shown(worst->first),
-                    shown(worst->second), frame, worst->recorded[frame] * 1e6, worst->overlap[frame] * 1e6);
+    text += fmt::format("largest difference: {} ~ {}, frame {}: {:.2f} um recorded, {:.2f} um true\n",
+                        shown(worst->first), shown(worst->second), frame, worst->recorded[frame] * 1e6,
+                        worst->measured.front().overlap[frame] * 1e6);
   }
   return text;
 }
@@ -159,10 +221,13 @@ ordered_json json_of(const std::vector<MeasuredPair>& pairs) {
     if (!pair.why_not.empty()) {
       row["not_measured"] = pair.why_not;
     } else {
-      row["source"] = name_of(pair.source);
-      row["overlap_m"] = pair.overlap;
-      row["bound_m"] = pair.bound;
+      const MeasuredPair::Measured& by = pair.measured.front();
+      row["source"] = name_of(by.source);
+      row["overlap_m"] = by.overlap;
+      row["bound_m"] = by.bound;
       row["recorded_m"] = pair.recorded;
+      if (pair.measured.size() > 1)
+        row["surfaces"] = {{"overlap_m", pair.measured[1].overlap}, {"bound_m", pair.measured[1].bound}};
     }
     json["pairs"].push_back(std::move(row));
   }
@@ -172,9 +237,9 @@ ordered_json json_of(const std::vector<MeasuredPair>& pairs) {
                                   {"second", worst->second},
                                   {"frame", frame},
                                   {"recorded_m", worst->recorded[frame]},
-                                  {"overlap_m", worst->overlap[frame]},
-                                  {"bound_m", worst->bound[frame]},
-                                  {"difference_m", worst->difference(frame)}};
+                                  {"overlap_m", worst->measured.front().overlap[frame]},
+                                  {"bound_m", worst->measured.front().bound[frame]},
+                                  {"difference_m", worst->difference(worst->measured.front(), frame)}};
   }
   return json;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/cli/progress_line.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/ruler/ruler.hpp"
 #include "engine/simulation/scene.hpp"
@@ -24,18 +25,26 @@ struct MeasuredBody {
 /// that stands beside the overlap of frame i is that of row i + 1; the last frame has none.
 struct MeasuredPair {
   std::string first, second;
-  std::string why_not;  ///< it cannot be measured; the rest is then empty
-  ruler::Source source = ruler::Source::solids;
-  std::vector<double> overlap, bound;  ///< a value per frame; the true overlap is in [overlap, overlap + bound]
-  std::vector<double> recorded;        ///< 0 where the pair was not near; one frame less
+  std::string why_not;           ///< it cannot be measured; the rest is then empty
+  std::vector<double> recorded;  ///< 0 where the pair was not near; one frame less
+
+  /// By what it was measured; a value per frame. The true overlap is in [overlap, overlap + bound].
+  struct Measured {
+    ruler::Source source = ruler::Source::solids;
+    std::vector<double> overlap, bound;
+  };
+  /// One; and a second one by the surfaces that the faces of triangles were recognized or recovered as.
+  std::vector<Measured> measured;
 
   /// How far the recorded value is outside of [overlap, overlap + bound]; above 0: the record says too little.
-  [[nodiscard]] double difference(std::size_t frame) const;
+  [[nodiscard]] double difference(const Measured& by, std::size_t frame) const;
 };
 
 /// Every pair of /state/pairs, in its order, from /state/body/*/pose. Error(input) for a file without such pairs
-/// (format 1) or of other bodies.
-[[nodiscard]] std::vector<MeasuredPair> measure_run(const RunFile& file, const std::vector<MeasuredBody>& bodies);
+/// (format 1) or of other bodies. A frame in which nothing moved by more than the ruler may miss takes the answer of
+/// the one before, its bound widened by that.
+[[nodiscard]] std::vector<MeasuredPair> measure_run(const RunFile& file, std::vector<MeasuredBody> bodies,
+                                                    const ProgressLine& line);
 
 [[nodiscard]] std::string table_of(const std::vector<MeasuredPair>& pairs);
 [[nodiscard]] nlohmann::ordered_json json_of(const std::vector<MeasuredPair>& pairs);

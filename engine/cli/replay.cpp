@@ -62,6 +62,12 @@ struct Replay {
   bool verify = false, measure = false;
 };
 
+std::vector<MeasuredPair> measured(const Replay& asked, const RunFile& file, std::vector<MeasuredBody> bodies,
+                                   const SimulateOptions& o) {
+  if (!asked.measure) return {};
+  return measure_run(file, std::move(bodies), ProgressLine(!o.quiet));
+}
+
 void tell(const Replay& asked, const RunFile& file, const std::string& hash, const std::vector<MeasuredPair>& measured,
           const SimulateOptions& o) {
   if (o.json) {
@@ -141,7 +147,7 @@ int replay(const Replay& asked, const SimulateOptions& o) {
     differs(difference_in_summary(file, session));
     if (!altered.empty()) differs(altered.front());
   }
-  tell(asked, file, hash, asked.measure ? measure_run(file, bodies) : std::vector<MeasuredPair>(), o);
+  tell(asked, file, hash, measured(asked, file, std::move(bodies), o), o);
   return 0;
 }
 
@@ -156,10 +162,12 @@ void add_replay(CLI::App& app, int& exit_code) {
       "--verify", asked->verify,
       "Compare every row, event, attribute and figure, and the checksums of what cannot be computed again; name "
       "the first frame, field or attribute that differs (exit 1)");
-  command->add_flag("--measure", asked->measure,
-                    "Measure the true overlap of every pair that came near, in every frame, from the recorded poses "
-                    "and the shapes alone, beside the recorded penetration: a line per pair with the frames in which "
-                    "either was largest and in which they differ most; --json has every frame");
+  command->add_flag(
+      "--measure", asked->measure,
+      "Measure the true overlap of every pair that came near, in every frame, from the recorded poses "
+      "and the shapes alone, beside the recorded penetration: a line per pair with the frames in which "
+      "either was largest and in which they differ most; --json has every frame. Meshes are measured twice: between "
+      "their triangles and between the surfaces that their faces were recovered as");
   command->add_option("--threads", options->threads, "Threads (same bits for any number)")->check(CLI::Range(1, 256));
   command->add_option("--simd", options->simd, "SIMD target (same bits)");
   command->add_flag("--json", options->json, "One JSON object on stdout");

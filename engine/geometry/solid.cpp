@@ -22,6 +22,7 @@ const KindInfo& info_of(Solid::Kind kind) {
       {"cone", 0, {"radius1", "radius2", "height"}},
       {"sphere", 0, {"radius"}},
       {"tube", 0, {"outer", "inner", "height"}},
+      {"torus", 0, {"ringRadius", "radius"}},
       {"difference", 2, {}},
       {"sum", 2, {}},
       {"intersection", 2, {}},
@@ -54,6 +55,10 @@ void check_relations(const Solid& solid) {
   if (solid.kind == Solid::Kind::tube && solid.sizes[1] >= solid.sizes[0]) {
     fail(ErrorKind::input, "Solid.tube: inner is {} m and outer {} m; make inner the smaller one", solid.sizes[1],
          solid.sizes[0]);
+  }
+  if (solid.kind == Solid::Kind::torus && solid.sizes[1] >= solid.sizes[0]) {
+    fail(ErrorKind::input, "Solid.torus: radius is {} m and ringRadius {} m; make radius the smaller one",
+         solid.sizes[1], solid.sizes[0]);
   }
   if (solid.kind != Solid::Kind::placed) return;
   const Pose& placement = solid.placement;

@@ -12,10 +12,10 @@ namespace verisim {
 
 /// Axis along z, centred at the origin. Lengths [m].
 struct Solid {
-  enum class Kind { box, cylinder, cone, sphere, tube, difference, sum, intersection, placed };
+  enum class Kind { box, cylinder, cone, sphere, tube, torus, difference, sum, intersection, placed };
   Kind kind = Kind::box;
   /// box: x, y, z.  cylinder: radius, height.  cone: radius1 (at -z), radius2, height.  sphere: radius.
-  /// tube: outer, inner, height.  others: none.
+  /// tube: outer, inner, height.  torus: ringRadius (of the middle of its tube), radius (of the tube).  others: none.
   std::vector<double> sizes;
   std::vector<std::shared_ptr<const Solid>> children;  ///< difference, sum, intersection: two; placed: one
   Pose placement;                                      ///< placed only: applied to the child

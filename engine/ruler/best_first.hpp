@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <queue>
 
+#include "engine/base/contract.hpp"
+#include "engine/base/error.hpp"
 #include "engine/ruler/depth.hpp"
 
 namespace verisim::ruler {
@@ -14,7 +16,10 @@ namespace verisim::ruler {
 template <typename Piece>
 class BestFirst {
  public:
-  explicit BestFirst(const Accuracy& accuracy) : accuracy_(accuracy) {}
+  explicit BestFirst(const Accuracy& accuracy) : accuracy_(accuracy) {
+    VERISIM_ASSERT(is_not_negative(accuracy.absolute));
+    VERISIM_ASSERT(is_not_negative(accuracy.relative));
+  }
 
   /// A new piece's number.
   std::uint32_t next_number() { return ++found_.pieces; }
@@ -37,11 +42,12 @@ class BestFirst {
       leave(piece);
   }
 
-  /// Until nothing is worth dividing, or the pieces allowed are spent. @param split adds parts of the piece that it
-  /// gets
+  /// Until nothing is worth dividing, or the pieces allowed are spent, beside those with which it began. @param split
+  /// adds parts of the piece that it gets
   template <typename Split>
   Depth run(const Split& split) {
-    while (!waiting_.empty() && waiting_.top().limit > enough() && found_.pieces < accuracy_.pieces_max) {
+    const std::uint32_t pieces_max = found_.pieces + accuracy_.pieces_max;
+    while (!waiting_.empty() && waiting_.top().limit > enough() && found_.pieces < pieces_max) {
       const Piece piece = waiting_.top();
       waiting_.pop();
       split(piece);

@@ -11,6 +11,42 @@
 
 namespace verisim::ruler {
 
+namespace {
+
+/// In four parts: all of the plane of `middle` within the radius of its origin.
+void add_disc(std::vector<Face>& faces, Face middle, double radius) {
+  constexpr int kParts = 4;
+  middle.z = middle.x.cross(middle.y);
+  middle.is_polar = true;
+  middle.v_low = 0;
+  middle.v_high = radius;
+  for (int i = 0; i < kParts; ++i) {
+    middle.u_low = i * pinned::kFullTurn / kParts;
+    middle.u_high = (i + 1) * pinned::kFullTurn / kParts;
+    faces.push_back(middle);
+  }
+}
+
+/// The circle in which a round divider crosses a plane that its axis stands upright on.
+struct Circle {
+  Vector3d middle;
+  double radius;  ///< 0: there is none
+};
+
+Circle circle_on(const Face& face, const Divider& round) {
+  const double height = face.z.dot(round.point - face.origin);
+  const Vector3d middle = round.point - height * face.z;
+  if (round.kind == Divider::Kind::sphere)
+    return {middle, std::sqrt(std::max(0.0, round.radius * round.radius - height * height))};
+  if (round.kind == Divider::Kind::plane || round.axis.cross(face.z).norm() > 1e-9) return {middle, 0};
+  if (round.kind == Divider::Kind::cylinder) return {middle, round.radius};
+  if (round.kind == Divider::Kind::cone)
+    return {middle, std::max(0.0, -height * round.axis.dot(face.z)) * round.sine / round.cosine};
+  return {middle, std::abs(height) < round.radius ? round.ring + round.radius : 0};
+}
+
+}  // namespace
+
 /// Recursive descent over "difference(box(1,1,1),placed(0,0,0;0,0,0,1;cylinder(0.1,2)))".
 class CsgReader {
  public:
@@ -90,7 +126,7 @@ class CsgReader {
     std::uint32_t index = 0;
     const std::uint32_t node =
         divide({.kind = Divider::Kind::plane, .point = X * at, .axis = X.rotation * normal}, index);
-    if (a > 0 && b > 0)  // an apex has no disc
+    if (a > 0 && b > 0)
       csg_.faces_.push_back({index, X * at, X.rotation * x, X.rotation * y, X.rotation * normal, -a, a, -b, b});
     return node;
   }
@@ -107,7 +143,17 @@ class CsgReader {
   }
   std::uint32_t disc(const Pose& X, double z, double radius) {
     const Vector3d y = z > 0 ? Vector3d(Vector3d::UnitY()) : Vector3d(-Vector3d::UnitY());
-    return flat(X, {0, 0, z}, Vector3d::UnitX(), y, radius, radius);
+    const std::uint32_t node = flat(X, {0, 0, z}, Vector3d::UnitX(), y, 0, 0);
+    const Face middle{.divider = csg_.nodes_[index_below(node)].first,
+                      .origin = X * Vector3d(0, 0, z),
+                      .x = X.rotation * Vector3d::UnitX(),
+                      .y = X.rotation * y};
+    if (radius > 0) add_disc(csg_.faces_, middle, radius);  // an apex has no disc
+    return node;
+  }
+  /// A divider's own node: itself, or what a complement is of.
+  [[nodiscard]] std::uint32_t index_below(std::uint32_t node) const {
+    return csg_.nodes_[node].operation == Operation::complement ? csg_.nodes_[node].first : node;
   }
   std::uint32_t cylinder_side(const Pose& X, double radius, double height) {
     return round(X, {.kind = Divider::Kind::cylinder, .radius = radius}, -0.5 * height, 0.5 * height);
@@ -158,6 +204,18 @@ class CsgReader {
     return round(X, {.kind = Divider::Kind::sphere, .radius = radius}, -0.25 * pinned::kFullTurn,
                  0.25 * pinned::kFullTurn);
   }
+  std::uint32_t torus(const Pose& X) {
+    const auto [ring, radius] = numbers<2>();
+    const Divider at_place = ruler::placed({.kind = Divider::Kind::torus, .radius = radius, .ring = ring}, X);
+    std::uint32_t index = 0;
+    const std::uint32_t node = divide(at_place, index);
+    constexpr double kQuarter = 0.25 * pinned::kFullTurn;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        csg_.faces_.push_back({index, at_place.point, X.rotation * Vector3d::UnitX(), X.rotation * Vector3d::UnitY(),
+                               at_place.axis, i * kQuarter, (i + 1) * kQuarter, j * kQuarter, (j + 1) * kQuarter});
+    return node;
+  }
   Pose placement() {
     Pose X;
     const auto p = numbers<3>();
@@ -185,6 +243,8 @@ class CsgReader {
       node = sphere(X);
     else if (kind == "tube")
       node = tube(X);
+    else if (kind == "torus")
+      node = torus(X);
     else if (kind == "placed") {
       const Pose inner = placement();
       node = solid(X * inner, depth + 1);
@@ -217,11 +277,13 @@ Ball around(const Face& face, const Divider& divider) {
   const double v = 0.5 * (face.v_low + face.v_high), half = 0.5 * (face.v_high - face.v_low);
   switch (divider.kind) {
     case Divider::Kind::plane:
-      return {face.origin, hypotenuse(face.u_high, face.v_high)};
+      return {face.origin, face.is_polar ? face.v_high : hypotenuse(face.u_high, face.v_high)};
     case Divider::Kind::sphere:
       return {face.origin, divider.radius};
     case Divider::Kind::cylinder:
       return {face.origin + v * face.z, hypotenuse(divider.radius, half)};
+    case Divider::Kind::torus:
+      return {face.origin, divider.ring + divider.radius};
     case Divider::Kind::cone:
       return {face.origin + v * divider.cosine * face.z, hypotenuse(face.v_high * divider.sine, half * divider.cosine)};
   }
@@ -232,6 +294,8 @@ Ball around(const Face& face, const Divider& divider) {
 
 Csg::Csg(std::string_view text) {
   CsgReader(text, *this).read();
+  find_senses();
+  add_discs();
   for (const Face& face : faces_) middle_ += face.origin / static_cast<double>(faces_.size());
   for (const Face& face : faces_) {
     const Ball ball = around(face, dividers_[face.divider]);
@@ -263,32 +327,84 @@ double Csg::value(std::span<const double> values) const {
   return at.back();
 }
 
-double Csg::least_value(std::span<const double> low, std::span<const double> high) const {
-  VERISIM_ASSERT(low.size() == dividers_.size());
-  VERISIM_ASSERT(high.size() == dividers_.size());
-  thread_local std::vector<std::array<double, 2>> at;  // of the nodes: from, to
+int Csg::side(std::span<const std::int8_t> sides) const {
+  VERISIM_ASSERT(sides.size() == dividers_.size());
+  thread_local std::vector<std::int8_t> at;  // of the nodes
   at.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
-    const std::array<double, 2> a =
-        node.operation == Operation::divider ? std::array{low[node.first], high[node.first]} : at[node.first];
-    const std::array<double, 2> b = node.operation < Operation::least ? a : at[node.second];
     switch (node.operation) {
       case Operation::divider:
-        at[i] = a;
+        at[i] = sides[node.first];
         break;
       case Operation::complement:
-        at[i] = {-a[1], -a[0]};
+        at[i] = static_cast<std::int8_t>(-at[node.first]);
         break;
       case Operation::least:
-        at[i] = {std::min(a[0], b[0]), std::min(a[1], b[1])};
+        at[i] = std::min(at[node.first], at[node.second]);
         break;
       case Operation::greatest:
-        at[i] = {std::max(a[0], b[0]), std::max(a[1], b[1])};
+        at[i] = std::max(at[node.first], at[node.second]);
         break;
     }
   }
-  return at.back()[0];
+  return at.back();
+}
+
+/// Around holes and posts a plane is searched in polar coordinates, in which their rims are straight.
+void Csg::add_discs() {
+  constexpr double kSame = 1e-11, kBeyond = 1.5;  // how far around a rim
+  const std::size_t count = faces_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (dividers_[faces_[i].divider].kind != Divider::Kind::plane || faces_[i].is_polar) continue;
+    std::vector<Circle> circles;
+    for (const Divider& divider : dividers_) {
+      const Circle circle = circle_on(faces_[i], divider);
+      const Vector3d from = circle.middle - faces_[i].origin;
+      const bool is_beside = std::abs(from.dot(faces_[i].x)) > faces_[i].u_high + circle.radius ||
+                             std::abs(from.dot(faces_[i].y)) > faces_[i].v_high + circle.radius;
+      if (circle.radius == 0 || is_beside) continue;
+      const auto known = std::find_if(circles.begin(), circles.end(),
+                                      [&](const Circle& c) { return (c.middle - circle.middle).norm() < kSame; });
+      if (known == circles.end())
+        circles.push_back(circle);
+      else
+        known->radius = std::max(known->radius, circle.radius);
+    }
+    for (const Circle& circle : circles) {
+      const auto is_it = [&](const Face& face) {
+        return face.is_polar && face.divider == faces_[i].divider && (face.origin - circle.middle).norm() < kSame;
+      };
+      if (std::none_of(faces_.begin(), faces_.end(), is_it)) {
+        Face middle = faces_[i];
+        middle.origin = circle.middle;
+        middle.discs.clear();
+        add_disc(faces_, middle, 0);
+      }
+      faces_[i].discs.push_back(
+          static_cast<std::uint32_t>(std::find_if(faces_.begin(), faces_.end(), is_it) - faces_.begin()));
+      for (Face& face : faces_)
+        if (is_it(face)) face.v_high = std::max(face.v_high, kBeyond * circle.radius);
+    }
+  }
+}
+
+void Csg::find_senses() {
+  std::vector<std::uint8_t> sense_of_node(nodes_.size(), 0), sense(dividers_.size(), 0);  // 1: as it is, 2: opposite
+  sense_of_node.back() = 1;
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const Node& node = nodes_[i];
+    const std::uint8_t here = sense_of_node[i];
+    if (node.operation == Operation::divider) {
+      sense[node.first] |= here;
+    } else if (node.operation == Operation::complement) {
+      sense_of_node[node.first] = static_cast<std::uint8_t>(here ^ 3U);
+    } else {
+      sense_of_node[node.first] = sense_of_node[node.second] = here;
+    }
+  }
+  for (std::uint32_t i = 0; i < sense.size(); ++i)
+    if (sense[i] == 3) of_both_senses_.push_back(i);
 }
 
 Csg Csg::placed(const Pose& X) const {

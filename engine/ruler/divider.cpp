@@ -50,6 +50,10 @@ double value_at(const Divider& d, const Vector3d& x) {
       const Meridian m = meridian_of(d, x);
       return m.rho * d.cosine - m.along * d.sine;
     }
+    case Divider::Kind::torus: {
+      const Meridian m = meridian_of(d, x);
+      return hypotenuse(m.rho - d.ring, m.along) - d.radius;
+    }
   }
   return 0;
 }
@@ -71,6 +75,13 @@ Local local_at(const Divider& d, const Vector3d& x) {
       const Meridian m = meridian_of(d, x);
       return {m.rho * d.cosine - m.along * d.sine, d.cosine * m.outward - d.sine * d.axis, m.rho};
     }
+    case Divider::Kind::torus: {
+      const Meridian m = meridian_of(d, x);
+      const double across = m.rho - d.ring, far = hypotenuse(across, m.along);
+      const Vector3d gradient =
+          far > 0 ? Vector3d((across * m.outward + m.along * d.axis) / far) : Vector3d(Vector3d::Zero());
+      return {far - d.radius, gradient, std::min(far, m.rho)};
+    }
   }
   return {};
 }
@@ -86,13 +97,19 @@ double bend(const Divider& d, const Vector3d& x, const Local& local, const Vecto
       const Vector3d around = d.axis.cross(meridian_of(d, x).outward);
       return (d.kind == Divider::Kind::cone ? d.cosine : 1) * around.dot(a) * around.dot(b) / local.bend_radius;
     }
+    case Divider::Kind::torus: {
+      const Meridian m = meridian_of(d, x);
+      const Vector3d around = d.axis.cross(m.outward), along = local.gradient.cross(around);
+      return along.dot(a) * along.dot(b) / (local.value + d.radius) +
+             local.gradient.dot(m.outward) * around.dot(a) * around.dot(b) / m.rho;
+    }
   }
   return 0;
 }
 
 double across(const Divider& d, const Vector3d& step) {
   if (d.kind == Divider::Kind::plane) return 0;
-  if (d.kind == Divider::Kind::sphere) return step.norm();
+  if (d.kind == Divider::Kind::sphere || d.kind == Divider::Kind::torus) return step.norm();
   return (step - d.axis.dot(step) * d.axis).norm();
 }
 
@@ -110,6 +127,9 @@ bool is_same(const Divider& a, const Divider& b, bool& opposite) {
     case Divider::Kind::cone:
       return std::abs(a.sine - b.sine) < kSame && (a.point - b.point).norm() < kSame &&
              (a.axis - b.axis).norm() < kSame;
+    case Divider::Kind::torus:
+      return std::abs(a.radius - b.radius) < kSame && std::abs(a.ring - b.ring) < kSame &&
+             a.axis.cross(b.axis).norm() < kSame && (a.point - b.point).norm() < kSame;
   }
   return false;
 }

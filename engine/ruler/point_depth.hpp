@@ -2,13 +2,13 @@
 // this folder.
 #pragma once
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "engine/ruler/foot.hpp"
 #include "engine/ruler/values.hpp"
 
 namespace verisim::ruler {
@@ -28,7 +28,7 @@ class PointDepth {
     std::sort(order_.begin(), order_.end());
     for (const auto& [distance, i] : order_) {
       if (distance >= least_) break;
-      if (is_own({{i}}, 1, foot(x, {{i}}, 1)))
+      if (is_own({{i}}, 1, foot(csg_.dividers(), x, {{i}}, 1)))
         least_ = distance;
       else
         near_.push_back(i);
@@ -38,7 +38,7 @@ class PointDepth {
   }
 
  private:
-  using Set = std::array<std::uint32_t, 3>;
+  using Set = DividerSet;
   static constexpr std::size_t kNearMax = 8;
 
   /// On a surface where two primitives of the solid touch the tree's value is 0; the solid goes on on both sides.
@@ -48,26 +48,6 @@ class PointDepth {
       if (values_.tree_with(i, -kInfinity) < 0 && values_.tree_with(i, kInfinity) < 0) return true;
     }
     return false;
-  }
-
-  /// A point near x on all of the first n dividers of the set: Newton, each step the shortest one.
-  Vector3d foot(const Vector3d& x, const Set& set, std::size_t n) const {
-    Vector3d y = x;
-    for (int step = 0; step < 8; ++step) {
-      Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> J(static_cast<Eigen::Index>(n), 3);
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> g(static_cast<Eigen::Index>(n));
-      for (std::size_t k = 0; k < n; ++k) {
-        const Local local = local_at(csg_.dividers()[set[k]], y);
-        J.row(static_cast<Eigen::Index>(k)) = local.gradient.transpose();
-        g(static_cast<Eigen::Index>(k)) = local.value;
-      }
-      if (g.cwiseAbs().maxCoeff() < 1e-15) break;
-      const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> JJ = J * J.transpose();
-      if (std::abs(JJ.determinant()) < 1e-12) return Vector3d::Constant(kInfinity);  // surfaces that never cross here
-      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> lambda = JJ.inverse() * g;
-      y -= J.transpose() * lambda;
-    }
-    return y;
   }
 
   /// Is y, on the first n of the set, a point of the solid's surface? Not if all of these dividers' sides are inside.
@@ -101,7 +81,7 @@ class PointDepth {
       }
   }
   void meet(const Vector3d& x, const Set& set, std::size_t n) {
-    const Vector3d y = foot(x, set, n);
+    const Vector3d y = foot(csg_.dividers(), x, set, n);
     const double distance = (y - x).norm();
     if (distance < least_ && is_own(set, n, y)) least_ = distance;
   }

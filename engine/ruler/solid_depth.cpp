@@ -7,9 +7,11 @@
 
 #include "engine/base/error.hpp"
 #include "engine/ruler/best_first.hpp"
+#include "engine/ruler/cell_limit.hpp"
 #include "engine/ruler/patch.hpp"
 #include "engine/ruler/point_depth.hpp"
 #include "engine/ruler/polygon.hpp"
+#include "engine/ruler/ranges.hpp"
 
 namespace verisim::ruler {
 namespace {
@@ -17,7 +19,15 @@ namespace {
 class Search {
  public:
   Search(const Csg& a, const Csg& b, const Accuracy& accuracy)
-      : a_(a), b_(b), search_(accuracy), values_a_(a), values_b_(b), point_depth_(b) {}
+      : a_(a),
+        b_(b),
+        search_(accuracy),
+        values_a_(a),
+        values_b_(b),
+        point_depth_(b),
+        ranges_a_(a),
+        ranges_b_(b),
+        cell_limit_(b) {}
 
   Depth run() {
     for (std::uint32_t i = 0; i < a_.faces().size(); ++i) {
@@ -68,71 +78,106 @@ class Search {
   double limit_of(const Piece& piece) {
     const Patch patch = patch_of(a_, piece);
     const double radius = patch.radius();
+    if (is_covered(piece, patch)) return 0;
     values_b_.at(patch.middle);
     const double tree_b = values_b_.tree();
     if (tree_b >= radius) return 0;
 
     const std::uint32_t own = a_.faces()[piece.face].divider;
     values_a_.at(patch.middle);
-    if (away_from_surface(own) > radius) return 0;
-
+    ranges_a_.of(patch, values_a_);
+    ranges_b_.of(patch, values_b_);
     Polygon proven, likely;
-    cut_by_own(own, patch, radius, proven, likely);
-    cut_by_other(patch, radius, proven, likely);
-    if (proven.is_empty()) return 0;
-    if (least_tree(patch, radius, proven) > 0) return 0;
+    cutting_.clear();
+    for (int pass = 0; pass < 2; ++pass) {  // what the one cuts off may tell the other more
+      if (side_beside(own) != 0) return 0;
+      cut_by_other(proven, likely);
+      if (proven.is_empty()) return 0;
+      ranges_a_.narrow(proven);
+      cut_by_own(own, proven, likely);
+      if (proven.is_empty()) return 0;
+      ranges_b_.narrow(proven);
+    }
+    if (b_.side(ranges_b_.sides()) > 0) return 0;
     double limit = tree_b > 0 ? radius - tree_b : kInfinity;
-    limit = std::min(limit, limit_by_faces(patch, radius, proven));
+    // A point may be as deep as the middle of what is left and as it is far from there.
+    const auto [middle, left] = ball_around(patch, proven);
+    values_b_.at(middle);
+    const double tree = values_b_.tree();
+    if (tree >= left) return 0;
+    const double at_middle = tree > 0 ? -tree : point_depth_(middle);
+    limit = std::min(limit, at_middle + left);
+    limit = cell_limit_(patch, proven, ranges_b_, values_b_, std::max(at_middle, 0.0) + 2 * left, limit);
+    limit = by_two_at_once(proven, limit);
     if (limit > search_.enough() && !likely.is_empty()) look_at(own, patch, likely);
     return limit;
   }
 
-  /// m, to A's surface at least, from a point of the divider `own`: both sides of it are inside, or both outside.
-  double away_from_surface(std::uint32_t own) {
-    const double below = values_a_.tree_with(own, -kInfinity), above = values_a_.tree_with(own, kInfinity);
-    return std::max(std::min(below, above), -std::max(below, above));
+  /// By discs of the same plane.
+  [[nodiscard]] bool is_covered(const Piece& piece, const Patch& patch) const {
+    const auto& discs = a_.faces()[piece.face].discs;
+    return std::any_of(discs.begin(), discs.end(), [&](std::uint32_t i) {
+      const Face& disc = a_.faces()[i];
+      return (disc.origin - patch.middle).norm() + patch.radius() <= disc.v_high;
+    });
+  }
+
+  /// Around all points of the patch that belong to the polygon.
+  static std::pair<Vector3d, double> ball_around(const Patch& patch, const Polygon& polygon) {
+    const auto at = [&](const Eigen::Vector2d& p) {
+      return Vector3d(patch.middle + p.x() * patch.a + p.y() * patch.b);
+    };
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& p : polygon.corners()) middle += p;
+    middle /= static_cast<double>(polygon.corners().size());
+    double radius = 0;
+    for (const Eigen::Vector2d& p : polygon.corners()) radius = std::max(radius, (at(p) - at(middle)).norm());
+    return {at(middle), radius + patch.bent()};
+  }
+
+  /// 0 if A's surface can pass through the patch, on the divider `own`; else both sides of it are inside or outside.
+  int side_beside(std::uint32_t own) {
+    std::vector<std::int8_t>& sides = ranges_a_.sides();
+    const std::int8_t kept = sides[own];
+    sides[own] = -1;
+    const int below = side_of(a_, sides);
+    sides[own] = 1;
+    const int above = below != 0 ? side_of(a_, sides) : 0;
+    sides[own] = kept;
+    return below == above ? below : 0;
   }
 
   /// What A's other surfaces leave of the patch: `proven` at least that, `likely` about that.
-  void cut_by_own(std::uint32_t own, const Patch& patch, double radius, Polygon& proven, Polygon& likely) {
-    cutting_.clear();
-    for (std::uint32_t i = 0; i < values_a_.size() && !proven.is_empty(); ++i) {
-      const double value = values_a_[i];
-      if (i == own || std::abs(value) > radius) continue;
-      for (const double side : {1.0, -1.0}) {
+  void cut_by_own(std::uint32_t own, Polygon& proven, Polygon& likely) {
+    std::vector<std::int8_t>& sides = ranges_a_.sides();
+    for (std::uint32_t i = 0; i < ranges_a_.size() && !proven.is_empty(); ++i) {
+      if (i == own || sides[i] != 0) continue;
+      for (const int side : {1, -1}) {
         // With this divider on that side nothing of the patch is A's surface: so what is, is on the other side.
-        values_a_[i] = side * kInfinity;
-        const double away = away_from_surface(own);
-        values_a_[i] = value;
-        if (away <= radius) continue;
-        keep_below(model_of(a_.dividers()[i], patch, side), proven, likely);
-        cutting_.push_back(i);
+        sides[i] = static_cast<std::int8_t>(side);
+        const bool is_none = side_beside(own) != 0;
+        sides[i] = 0;
+        if (!is_none) continue;
+        keep_below(side > 0 ? ranges_a_.model(i) : -ranges_a_.model(i), proven, likely);
+        if (std::find(cutting_.begin(), cutting_.end(), i) == cutting_.end()) cutting_.push_back(i);
         break;
       }
     }
   }
   /// What B's surfaces leave of the patch that can be within B.
-  void cut_by_other(const Patch& patch, double radius, Polygon& proven, Polygon& likely) {
-    for (std::uint32_t i = 0; i < values_b_.size() && !proven.is_empty(); ++i) {
-      if (std::abs(values_b_[i]) > radius) continue;
-      const OutSide out = out_side_of(values_b_, i, 2 * radius);
-      if (out.margin > radius) keep_below(model_of(b_.dividers()[i], patch, out.sign), proven, likely);
+  void cut_by_other(Polygon& proven, Polygon& likely) {
+    std::vector<std::int8_t>& sides = ranges_b_.sides();
+    for (std::uint32_t i = 0; i < ranges_b_.size() && !proven.is_empty(); ++i) {
+      if (sides[i] != 0) continue;
+      for (const int side : {1, -1}) {
+        sides[i] = static_cast<std::int8_t>(side);
+        const bool is_out = side_of(b_, sides) > 0;
+        sides[i] = 0;
+        if (!is_out) continue;
+        keep_below(side > 0 ? ranges_b_.model(i) : -ranges_b_.model(i), proven, likely);
+        break;
+      }
     }
-  }
-  /// What the tree of B is at least, on what is left of the patch: above 0, nothing of it is within B.
-  double least_tree(const Patch& patch, double radius, const Polygon& proven) {
-    low_.resize(values_b_.size());
-    high_.resize(values_b_.size());
-    for (std::size_t i = 0; i < values_b_.size(); ++i) {
-      low_[i] = values_b_[i] - radius;
-      high_[i] = values_b_[i] + radius;
-      if (low_[i] > 0 || high_[i] < 0) continue;
-      const Model model = model_of(b_.dividers()[i], patch, 1);
-      low_[i] =
-          std::max(low_[i], -largest({-model.linear.at, -model.linear.du, -model.linear.dv}, proven) - model.below);
-      high_[i] = std::min(high_[i], largest(model.linear, proven) + model.above);
-    }
-    return b_.least_value(low_, high_);
   }
 
   static void keep_below(const Model& model, Polygon& proven, Polygon& likely) {
@@ -142,72 +187,21 @@ class Search {
     proven.keep_below(linear);
   }
 
-  double limit_by_faces(const Patch& patch, double radius, const Polygon& proven) {
-    depths_.clear();
-    uncertain_.clear();
-    double limit = kInfinity;
-    for (std::uint32_t i = 0; i < values_b_.size(); ++i) {
-      const double distance = std::abs(values_b_[i]);
-      if (distance > limit + 2 * radius) continue;
-      const OutSide out = out_side_of(values_b_, i, distance + 2 * radius);
-      if (out.margin >= distance) limit = std::min(limit, distance + radius);
-      if (out.margin < distance + 2 * radius) {
-        if (distance < limit && uncertain_.size() < kUncertainMax) uncertain_.push_back(i);
-        continue;
-      }
-      Model model = model_of(b_.dividers()[i], patch, -out.sign);
-      model.linear.at += model.above;
-      limit = std::min(limit, largest(model.linear, proven));
-      depths_.push_back(model.linear);
-    }
-    for (std::size_t i = 0; i < uncertain_.size(); ++i)
-      for (std::size_t j = i + 1; j < uncertain_.size(); ++j)
-        limit = std::min(limit, limit_by_edge(uncertain_[i], uncertain_[j], patch, radius, proven));
-    std::sort(depths_.begin(), depths_.end(), [](const Linear& f, const Linear& g) { return f.at < g.at; });
-    const std::size_t n = std::min<std::size_t>(depths_.size(), 3);
+  double by_two_at_once(const Polygon& proven, double limit) {
+    std::vector<Linear>& depths = cell_limit_.linear();
+    std::sort(depths.begin(), depths.end(), [](const Linear& f, const Linear& g) { return f.at < g.at; });
+    const std::size_t n = std::min<std::size_t>(depths.size(), 3);
     for (std::size_t i = 0; i < n && limit > search_.enough(); ++i)
-      for (std::size_t j = i + 1; j < n; ++j)
-        limit = std::min(limit, largest_of_lesser(depths_[i], depths_[j], proven));
+      for (std::size_t j = i + 1; j < n; ++j) limit = std::min(limit, largest_of_lesser(depths[i], depths[j], proven));
     return limit;
-  }
-
-  /// The same by an edge in which two dividers meet at a right angle, along all of it: planes, or a plane across a
-  /// cylinder. Its distance is sqrt(g^2 + h^2). One of the four quarters around it has to be outside, with margin.
-  double limit_by_edge(std::uint32_t i, std::uint32_t j, const Patch& patch, double radius, const Polygon& proven) {
-    const Divider& g = b_.dividers()[i];
-    const Divider& h = b_.dividers()[j];
-    const auto is_plane = [](const Divider& d) { return d.kind == Divider::Kind::plane; };
-    const auto is_cylinder = [](const Divider& d) { return d.kind == Divider::Kind::cylinder; };
-    constexpr double kSquare = 1e-9;
-    const bool square = (is_plane(g) && is_plane(h) && std::abs(g.axis.dot(h.axis)) < kSquare) ||
-                        (is_plane(g) && is_cylinder(h) && g.axis.cross(h.axis).norm() < kSquare) ||
-                        (is_cylinder(g) && is_plane(h) && g.axis.cross(h.axis).norm() < kSquare);
-    if (!square) return kInfinity;
-    const double at_g = values_b_[i], at_h = values_b_[j];
-    double margin = -kInfinity;
-    for (const double side : {-kInfinity, kInfinity}) {
-      values_b_[i] = side;
-      for (const double other : {-kInfinity, kInfinity}) margin = std::max(margin, values_b_.tree_with(j, other));
-    }
-    values_b_[i] = at_g;
-    const double distance = hypotenuse(at_g, at_h);
-    if (margin < distance + 2 * radius) return margin >= distance ? distance + radius : kInfinity;
-    const auto farthest = [&](const Divider& d) {
-      double most = 0;
-      for (const double sign : {-1.0, 1.0}) {
-        const Model model = model_of(d, patch, sign);
-        most = std::max(most, largest(model.linear, proven) + model.above);
-      }
-      return most;
-    };
-    return std::min(distance + radius, hypotenuse(farthest(g), farthest(h)) * (1 + kSquare));
   }
 
   /// Tries the places of the patch that its linear models take for the deepest.
   void look_at(std::uint32_t own, const Patch& patch, const Polygon& likely) {
+    const std::vector<Linear>& depths = cell_limit_.linear();
     const auto least = [&](const Eigen::Vector2d& p) {
       double value = kInfinity;
-      for (const Linear& f : depths_) value = std::min(value, f(p));
+      for (const Linear& f : depths) value = std::min(value, f(p));
       return value;
     };
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
@@ -217,9 +211,10 @@ class Search {
     for (const Eigen::Vector2d& corner : likely.corners())
       if (least(corner) > least(best)) best = corner;
     try_at(own, patch, best);
-    if (depths_.empty()) {
+    if (cell_limit_.corner()) try_at(own, patch, *cell_limit_.corner());
+    if (depths.empty()) {
       for (const Eigen::Vector2d& corner : likely.corners()) try_at(own, patch, corner);
-    } else if (depths_.size() > 1) {  // on the way to the middle two depths may become equal
+    } else if (depths.size() > 1) {  // on the way to the middle two depths may become equal
       for (int i = 0; i < 24; ++i) {
         const Eigen::Vector2d half = 0.5 * (best + middle);
         if (least(half) >= least(best))
@@ -229,6 +224,12 @@ class Search {
       }
       try_at(own, patch, best);
     }
+  }
+
+  /// m, to A's surface at least, from a point of the divider `own`: both sides of it are inside, or both outside.
+  double away_from_surface(std::uint32_t own) {
+    const double below = values_a_.tree_with(own, -kInfinity), above = values_a_.tree_with(own, kInfinity);
+    return std::max(std::min(below, above), -std::max(below, above));
   }
 
   void try_at(std::uint32_t own, const Patch& patch, const Eigen::Vector2d& p) {
@@ -261,11 +262,9 @@ class Search {
   BestFirst<Piece> search_;
   Values values_a_, values_b_;
   PointDepth point_depth_;
+  Ranges ranges_a_, ranges_b_;
+  CellLimit cell_limit_;
   std::vector<std::uint32_t> cutting_;
-  std::vector<double> low_, high_;  ///< of b's dividers on a patch
-  static constexpr std::size_t kUncertainMax = 6;
-  std::vector<Linear> depths_;            ///< bounds of the last patch's depth
-  std::vector<std::uint32_t> uncertain_;  ///< dividers of b near it that may not be b's surface there
 };
 
 }  // namespace

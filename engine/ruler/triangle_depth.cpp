@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/ruler/best_first.hpp"
 
 namespace verisim::ruler {
 namespace {
@@ -41,7 +42,7 @@ bool crosses(const Vector3d& x, const Vector3d& d, const std::array<Vector3d, 3>
   return u >= 0 && v >= 0 && u + v <= 1 && e2.dot(q) / det > 0;
 }
 
-bool meets(const Vector3d& x, const Vector3d& d, const Eigen::AlignedBox3d& box) {
+bool ray_meets(const Vector3d& x, const Vector3d& d, const Eigen::AlignedBox3d& box) {
   double from = 0, to = kFarAway;
   for (int k = 0; k < 3; ++k) {
     const double a = (box.min()[k] - x[k]) / d[k], b = (box.max()[k] - x[k]) / d[k];
@@ -49,6 +50,29 @@ bool meets(const Vector3d& x, const Vector3d& d, const Eigen::AlignedBox3d& box)
     to = std::min(to, std::max(a, b));
   }
   return from <= to * (1 + 1e-12) + 1e-15;
+}
+
+/// Is there a direction in which they are more than `gap` apart? Tried are those that decide for two triangles: both
+/// normals, and across a side of each; for those in one plane across their sides within it.
+bool are_triangles_apart(const std::array<Vector3d, 3>& a, const std::array<Vector3d, 3>& b, double gap) {
+  const auto is_apart_along = [&](const Vector3d& axis) {
+    const double length = axis.norm();
+    if (length == 0) return false;
+    const double a0 = axis.dot(a[0]), a1 = axis.dot(a[1]), a2 = axis.dot(a[2]);
+    const double b0 = axis.dot(b[0]), b1 = axis.dot(b[1]), b2 = axis.dot(b[2]);
+    return std::min({a0, a1, a2}) - std::max({b0, b1, b2}) > gap * length ||
+           std::min({b0, b1, b2}) - std::max({a0, a1, a2}) > gap * length;
+  };
+  const std::array<Vector3d, 3> of_a = {a[1] - a[0], a[2] - a[1], a[0] - a[2]};
+  const std::array<Vector3d, 3> of_b = {b[1] - b[0], b[2] - b[1], b[0] - b[2]};
+  const Vector3d normal_a = of_a[0].cross(of_a[1]), normal_b = of_b[0].cross(of_b[1]);
+  if (is_apart_along(normal_a) || is_apart_along(normal_b)) return true;
+  for (const Vector3d& e : of_a)
+    for (const Vector3d& f : of_b)
+      if (is_apart_along(e.cross(f))) return true;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (is_apart_along(normal_a.cross(of_a[i])) || is_apart_along(normal_b.cross(of_b[i]))) return true;
+  return false;
 }
 
 /// A piece of a triangle of A, in B's coordinates.
@@ -66,12 +90,18 @@ class TriangleSearch {
   TriangleSearch(const Triangles& b, const Accuracy& accuracy) : b_(b), search_(accuracy) {}
 
   Depth run(const Triangles& a, const Pose& X_BA) {
-    for (std::uint32_t i = 0; i < a.size(); ++i) {
+    const auto is_outside = [&](const Vector3d& middle, double radius) {
+      const Vector3d x = X_BA * middle;
+      if (b_.bounds().squaredExteriorDistance(x) > radius * radius) return true;
+      return b_.nearest(x).distance > radius && !b_.is_inside(x);
+    };
+    const auto add_triangle = [&](std::uint32_t i) {
       TrianglePiece piece{a.corners(i)};
       Eigen::AlignedBox3d box;
       for (Vector3d& corner : piece.corners) box.extend(corner = X_BA * corner);
       if (box.intersects(b_.bounds())) add(piece);
-    }
+    };
+    a.each(is_outside, add_triangle);
     return search_.run([&](const TrianglePiece& piece) { split(piece); });
   }
 
@@ -102,8 +132,10 @@ class TriangleSearch {
     const double radius = std::sqrt(
         std::max({(c[0] - middle).squaredNorm(), (c[1] - middle).squaredNorm(), (c[2] - middle).squaredNorm()}));
     const Triangles::Nearest near = b_.nearest(middle);
-    double limit = b_.is_inside(middle) ? near.distance + radius : radius - near.distance;
+    const bool is_inside = b_.is_inside(middle);
+    double limit = is_inside ? near.distance + radius : radius - near.distance;
     if (limit <= search_.enough()) return std::max(0.0, limit);
+    if (!is_inside && !b_.meets(c)) return 0;
     for (const Vector3d& x : {c[0], c[1], c[2], middle}) {
       const Triangles::Nearest there = b_.nearest(x);
       if (there.distance > search_.depth() && b_.is_inside(x)) search_.found(there.distance, x);
@@ -190,6 +222,28 @@ Triangles::Nearest Triangles::nearest(const Vector3d& x) const {
   return best;
 }
 
+bool Triangles::meets(const std::array<Vector3d, 3>& corners_of_one) const {
+  Eigen::AlignedBox3d reach;
+  for (const Vector3d& corner : corners_of_one) reach.extend(corner);
+  reach.min().array() -= kTouch;
+  reach.max().array() += kTouch;
+  std::array<std::uint32_t, 128> open;
+  std::size_t n = 0;
+  open[n++] = 0;
+  while (n > 0) {
+    const Box& box = boxes_[open[--n]];
+    if (!box.bounds.intersects(reach)) continue;
+    if (box.count == 0) {
+      open[n++] = box.first;
+      open[n++] = box.first + 1;
+      continue;
+    }
+    for (std::uint32_t i = box.first; i < box.first + box.count; ++i)
+      if (!are_triangles_apart(corners(order_[i]), corners_of_one, kTouch)) return true;
+  }
+  return false;
+}
+
 bool Triangles::crosses_oddly(const Vector3d& x, const Vector3d& direction) const {
   bool odd = false;
   std::array<std::uint32_t, 128> open;
@@ -197,7 +251,7 @@ bool Triangles::crosses_oddly(const Vector3d& x, const Vector3d& direction) cons
   open[n++] = 0;
   while (n > 0) {
     const Box& box = boxes_[open[--n]];
-    if (!meets(x, direction, box.bounds)) continue;
+    if (!ray_meets(x, direction, box.bounds)) continue;
     if (box.count == 0) {
       open[n++] = box.first;
       open[n++] = box.first + 1;

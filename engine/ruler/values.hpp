@@ -26,6 +26,7 @@ class Values {
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = value_at(csg_.dividers()[i], x);
   }
   double& operator[](std::size_t i) { return values_[i]; }
+  double operator[](std::size_t i) const { return values_[i]; }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] double tree() const { return csg_.value(values_); }
   /// The tree with one divider on a side of our choice.
@@ -42,31 +43,21 @@ class Values {
   std::vector<double> values_;
 };
 
-/// The side of a divider on which nothing of the solid is near: +1 where the divider's values are above 0, -1 where
-/// they are below, 0: there is none. `margin` [m]: the solid is farther off than that, on that side.
-///
-/// A point x within the solid can then be no deeper than its distance |g(x)| to the divider if |g(x)| and what x is
-/// away from here are together less than the margin: the straight way to the divider and a step further leads out of
-/// the solid, and so through its surface.
-struct OutSide {
-  double sign = 0, margin = 0;
-};
-
-/// Looks no further once there is as much margin as is wanted.
-inline OutSide out_side_of(Values& values, std::size_t divider, double wanted) {
-  const double below = values.tree_with(divider, -kInfinity), above = values.tree_with(divider, kInfinity);
-  OutSide out = above >= below ? OutSide{1, above} : OutSide{-1, below};
-  if (out.margin < 0) return {};
-  // Where another divider bounds two primitives (a hole as deep as its block is high) the tree is 0 on it, though both
-  // of its sides are outside.
-  const double kept = values[divider];
-  values[divider] = out.sign * kInfinity;
-  for (std::size_t i = 0; i < values.size() && out.margin < wanted; ++i) {
-    if (i == divider || std::abs(values[i]) != out.margin) continue;  // not the one that decides
-    out.margin = std::max(out.margin, std::min(values.tree_with(i, -kInfinity), values.tree_with(i, kInfinity)));
+/// The side of a solid's surface, as Csg::side; where that leaves it open, both sides of the dividers of both senses
+/// are tried, two of them at once at most. What lies on such a divider is outside if what lies beside it is.
+inline int side_of(const Csg& csg, std::vector<std::int8_t>& sides, int splits = 2) {
+  const int side = csg.side(sides);
+  if (side != 0 || splits == 0) return side;
+  for (const std::uint32_t i : csg.of_both_senses()) {
+    if (sides[i] != 0) continue;
+    sides[i] = -1;
+    const int below = side_of(csg, sides, splits - 1);
+    sides[i] = 1;
+    const int above = below != 0 ? side_of(csg, sides, splits - 1) : 0;
+    sides[i] = 0;
+    if (below != 0 && below == above) return below;
   }
-  values[divider] = kept;
-  return out;
+  return 0;
 }
 
 }  // namespace verisim::ruler

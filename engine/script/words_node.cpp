@@ -246,6 +246,9 @@ int sphere(lua_State* L) {
 int tube(lua_State* L) {
   return round_solid(L, Solid::Kind::tube, "Solid.tube", "outer", "inner", "height");
 }
+int torus(lua_State* L) {
+  return round_solid(L, Solid::Kind::torus, "Solid.torus", "ringRadius", "radius");
+}
 
 NodePointer solid_at(lua_State* L, int index, const char* what) {
   NodePointer node = get<NodePointer>(L, index, what);
@@ -336,6 +339,7 @@ void add_node_words(lua_State* L) {
   set_function<cone, Charge::call>(L, "cone");
   set_function<sphere, Charge::call>(L, "sphere");
   set_function<tube, Charge::call>(L, "tube");
+  set_function<torus, Charge::call>(L, "torus");
   lua_setglobal(L, "Solid");
 }
 

@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from program import ProgramTest, SMALL
+from program import turned_stl, ProgramTest, SMALL
 
 
 class Replay(ProgramTest):
@@ -81,6 +81,43 @@ addObject{ name="ball", voxelsize=0.002, density=2000, position={0.001,0.002,0.0
         self.assertIn("largest difference: plate ~ ball, frame %d" % worst["frame"],
                       self.succeed("replay", run_file, "--measure").stdout)
         self.assertEqual(summary["penetration_source"], "voxels")
+
+    ROD = """
+defineSimulationParameters{ gravity={0,0,-9.81}, allBodiesAreDynamic=true, duration=0.02, hybrid="exact" }
+addObject{ name="plate", fixed=true, voxelsize=0.002, Solid.box{0.1,0.1,0.02} }
+addObject{ name="rod", voxelsize=0.002, density=2000, position={0,0,0.02997},
+           orientation=AngleAxis(math.pi/2, Axis{1,0,0}), Model{ "rod.stl", scale=0.001, brep=true } }"""
+
+    def test_measure_tells_triangles_and_recovered_surfaces_apart(self):
+        """A mesh of a rod of 20 mm radius lies on a plate with the middle of a facet: the cylinder reaches 30 um into it,
+        the facets end 20 mm (1 - cos(pi/48)) = 43 um above that."""
+        sides = 48
+        self.write("rod.stl", self.turned_by_half_a_side(turned_stl(inner=0, outer=20, height=20, sides=sides), sides))
+        run_file, _ = self.small_run(script=self.ROD)
+        measured = json.loads(self.succeed("replay", run_file, "--measure", "--json").stdout)["measured"]
+        pair, = measured["pairs"]
+        self.assertEqual(pair["source"], "triangles")
+        with h5py.File(run_file) as f:
+            truth = 0.03 - f["/state/body/rod/pose"][0, 2]
+        surfaces = pair["surfaces"]
+        self.assertLessEqual(surfaces["overlap_m"][0], truth + 1e-6)
+        self.assertGreaterEqual(surfaces["overlap_m"][0], truth - 1e-5)
+        self.assertGreaterEqual(surfaces["overlap_m"][0] + surfaces["bound_m"][0], truth - 1e-6)
+        self.assertLess(pair["overlap_m"][0] + pair["bound_m"][0], truth)
+        self.assertRegex(self.succeed("replay", run_file, "--measure").stdout, r"plate ~ rod +triangles[^\n]*\nplate ~ rod +surfaces")
+
+    @staticmethod
+    def turned_by_half_a_side(stl, sides):
+        """The same about z, so that a facet and no edge is farthest along y."""
+        angle = numpy.pi / sides
+        def turned(line):
+            word, *numbers = line.split()
+            if word != "vertex":
+                return line
+            x, y, z = map(float, numbers)
+            return "vertex {:.9g} {:.9g} {:.9g}".format(x * numpy.cos(angle) - y * numpy.sin(angle),
+                                                        x * numpy.sin(angle) + y * numpy.cos(angle), z)
+        return "\n".join(map(turned, stl.splitlines())) + "\n"
 
     def test_without_embedded_inputs_there_is_nothing_to_replay(self):
         run_file, _ = self.small_run("--no-embed")

@@ -116,6 +116,7 @@ std::vector<NamedSolid> solids() {
       {"ConeThatIsACylinder", make(Kind::cone, {0.05, 0.05, 0.1})},
       {"Sphere", make(Kind::sphere, {0.05})},
       {"Tube", make(Kind::tube, {0.05, 0.03, 0.2})},
+      {"Torus", make(Kind::torus, {0.05, 0.02})},
       {"TiltedCylinder", testing::placed(make(Kind::cylinder, {0.05, 0.4}), {1, 2, 3}, kTilt)},
       {"ConicalHole", make(Kind::difference, block, cut_cone)},
       {"SphericalHollow",

@@ -38,6 +38,7 @@ std::vector<ClosedForm> closed_forms() {
        kPi * (0.07 * slant + 0.0025 + 0.0004)},
       {"Sphere", make(Kind::sphere, {0.05}), 4.0 / 3 * kPi * 0.000125, 4 * kPi * 0.0025},
       {"Tube", make(Kind::tube, {0.05, 0.03, 0.2}), kPi * 0.0016 * 0.2, 2 * kPi * (0.08 * 0.2 + 0.0016)},
+      {"Torus", make(Kind::torus, {0.05, 0.02}), 2 * kPi * kPi * 0.05 * 0.0004, 4 * kPi * kPi * 0.05 * 0.02},
   };
 }
 
@@ -152,6 +153,7 @@ TEST(Check, RefusesSizesThatAreNoLengths) {
 
 TEST(Check, RefusesSizesThatDoNotFitEachOther) {
   EXPECT_THROW(check(make(Kind::tube, {0.1, 0.1, 1})), Error);
+  EXPECT_THROW(check(make(Kind::torus, {0.1, 0.1})), Error);
   EXPECT_THROW(check(make(Kind::cone, {0, 0, 1})), Error);
   EXPECT_THROW(check(make(Kind::box, {0.1, 0.1})), Error);
   EXPECT_NO_THROW(check(make(Kind::cone, {0.1, 0, 1})));

@@ -31,6 +31,9 @@ inline SolidPtr cone(double below, double above, double height) {
 inline SolidPtr ball(double radius) {
   return make(Solid::Kind::sphere, {radius});
 }
+inline SolidPtr torus(double ring_radius, double radius) {
+  return make(Solid::Kind::torus, {ring_radius, radius});
+}
 inline SolidPtr operator+(const SolidPtr& a, const SolidPtr& b) {
   return make(Solid::Kind::sum, {}, {a, b});
 }
@@ -74,7 +77,10 @@ inline std::vector<Kind> body_kinds() {
           {"prism8", prism(8, 0.008, 0.02)},
           {"chamfered", cylinder(0.008, 0.02) + moved(cone(0.006, 0.008, 0.002), {0, 0, -0.011})},
           {"stepped", cylinder(0.006, 0.03) + moved(cylinder(0.01, 0.012), {0, 0, 0.009})},
-          {"keyed", cylinder(0.008, 0.02) + moved(box(0.006, 0.004, 0.02), {0.008, 0, 0})}};
+          {"keyed", cylinder(0.008, 0.02) + moved(box(0.006, 0.004, 0.02), {0.008, 0, 0})},
+          {"ring", torus(0.01, 0.004)},
+          {"filleted", moved(cylinder(0.008, 0.018), {0, 0, 0.001}) + cylinder(0.006, 0.02) +
+                           moved(torus(0.006, 0.002), {0, 0, -0.008})}};
 }
 
 /// Their upper faces, or highest points, at z = 0.
@@ -95,7 +101,10 @@ inline std::vector<Kind> seat_kinds() {
           {"square_post", low + moved(box(0.012, 0.012, 0.03), {0, 0, -0.015})},
           {"ridge", low + moved(box(0.02, 0.1, 0.02), {0, 0, -0.02 * std::sqrt(0.5)}, {0, eighth, 0})},
           {"spike", low + moved(cone(0.02, 0.002, 0.03), {0, 0, -0.015})},
-          {"step", low + moved(box(0.06, 0.12, 0.02), {-0.03, 0, -0.01})}};
+          {"step", low + moved(box(0.06, 0.12, 0.02), {-0.03, 0, -0.01})},
+          {"ring_groove", block - torus(0.02, 0.006)},
+          {"corner",
+           low + moved(box(0.02, 0.12, 0.02), {-0.02, 0, -0.01}) + moved(box(0.12, 0.02, 0.02), {0, -0.02, -0.01})}};
 }
 
 /// A kind with its part, loaded once.

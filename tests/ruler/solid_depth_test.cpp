@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 #include "tests/length.hpp"
 #include "tests/ruler/shapes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -91,6 +92,31 @@ TEST(SolidDepth, OfACornerInACornerIsTheDistanceOfBoth) {
   const Overlap found = of("box(0.02,0.02,0.02)", at(0.005 + d, 0.005 + d, 0.005 + d),
                            "difference(box(0.06,0.06,0.06),box(0.03,0.03,0.03))");
   EXPECT_NEAR(found.depth, d * std::sqrt(3.0), 1e-9);
+}
+
+// A ring that lies on a plate reaches d into it all around; a tilted one with its lowest point; one that stands, with
+// the outermost point of its tube.
+TEST(SolidDepth, OfATorusInAPlaneIsHowFarItReachesBelow) {
+  const std::string ring = "torus(0.01,0.004)", plate = "placed(0,0,-0.01;0,0,0,1;box(0.1,0.1,0.02))";
+  for (const double d : {1e-7, 1e-5, 1e-4}) {
+    SCOPED_TRACE(d);
+    for (const double tilt : {0.0, 0.3, 0.25 * pinned::kFullTurn}) {
+      const double lowest = 0.01 * pinned::sin(tilt) + 0.004;
+      const Overlap found = of(ring, at(0.001, 0.002, lowest - d, {tilt, 0, 0}), plate);
+      expect_depth(found, d, 2e-3 * d + (tilt == 0 ? 1e-7 : 2e-9));  // as deep all around: more to search
+    }
+  }
+}
+
+// A ball in a ring's hole touches it along a circle, all around: of a ball of radius r whose centre is h over the
+// ring's plane the distance to the tube is sqrt(R^2 + h^2) - r - t.
+TEST(SolidDepth, OfABallInATorusIsTheDistanceOfItsCentreToTheRing) {
+  const double d = 1e-6, h = std::sqrt(0.012 * 0.012 - 0.01 * 0.01);
+  const double radius = 0.012 - 0.004 + d;
+  const Overlap found = of("sphere(" + std::to_string(radius * 1e3) + "e-3)", at(0, 0, h), "torus(0.01,0.004)", {},
+                           {.absolute = 2e-7, .relative = 0.01, .pieces_max = 4000});
+  EXPECT_NEAR(found.depth, d, 0.2 * d);
+  EXPECT_LE(found.bound, 3e-7);
 }
 
 // A sum of two primitives that touch has no surface between them.

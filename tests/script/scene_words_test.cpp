@@ -151,6 +151,8 @@ TEST(Solids, AreCutJoinedAndMoved) {
 
 TEST(Solids, OfImpossibleSizesAreRefusedAtTheirLine) {
   EXPECT_EQ(refusal_of("\nlocal s = Solid.sphere{radius = -1}").rfind("pin.lua:2: ", 0), 0u);
+  EXPECT_NE(refusal_of("Solid.torus{ringRadius = 1, radius = 1}"), "");
+  EXPECT_EQ(refusal_of("Solid.torus{ringRadius = 2, radius = 1}"), "");
   EXPECT_NE(refusal_of("Solid.tube{outer = 1, inner = 2, height = 1}"), "");
   EXPECT_NE(refusal_of("Solid.cylinder{radius = 1}").find("Solid.cylinder needs height"), std::string::npos);
   EXPECT_NE(refusal_of("Solid.cylinder{radius = 1, hieght = 2}"), "");

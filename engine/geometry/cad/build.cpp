@@ -6,6 +6,7 @@
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
 #include <ShapeUpgrade_UnifySameDomain.hxx>
 #include <TopExp_Explorer.hxx>
@@ -65,6 +66,8 @@ TopoDS_Shape raw_shape(const Solid& solid) {
       return BRepPrimAPI_MakeSphere(mm[0]).Shape();
     case Solid::Kind::tube:
       return boolean(Solid::Kind::difference, cylinder(mm[0], mm[2]), cylinder(mm[1], mm[2]));
+    case Solid::Kind::torus:
+      return BRepPrimAPI_MakeTorus(mm[0], mm[1]).Shape();
     case Solid::Kind::placed:
       return placed(child(0), solid.placement);
     case Solid::Kind::difference:

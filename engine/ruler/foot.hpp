@@ -1,0 +1,43 @@
+// The nearest point on one, two or three dividers at once. Private to this folder.
+#pragma once
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "engine/ruler/csg.hpp"
+#include "engine/ruler/values.hpp"
+
+namespace verisim::ruler {
+
+using DividerSet = std::array<std::uint32_t, 3>;
+
+/// A point near x on all of the first n dividers of the set: Newton, each step the shortest one. Infinite where they
+/// never cross.
+[[nodiscard]] inline Vector3d foot(std::span<const Divider> dividers, const Vector3d& x, const DividerSet& set,
+                                   std::size_t n) {
+  Vector3d y = x;
+  for (int step = 0; step < 8; ++step) {
+    Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> J(static_cast<Eigen::Index>(n), 3);
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> g(static_cast<Eigen::Index>(n));
+    for (std::size_t k = 0; k < n; ++k) {
+      const Local local = local_at(dividers[set[k]], y);
+      J.row(static_cast<Eigen::Index>(k)) = local.gradient.transpose();
+      g(static_cast<Eigen::Index>(k)) = local.value;
+    }
+    if (g.cwiseAbs().maxCoeff() < 1e-15) break;
+    if (n == 1) {
+      y -= g(0) * J.row(0).transpose();
+      continue;
+    }
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> JJ = J * J.transpose();
+    if (std::abs(JJ.determinant()) < 1e-12) return Vector3d::Constant(kInfinity);  // surfaces that never cross here
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> lambda = JJ.inverse() * g;
+    y -= J.transpose() * lambda;
+  }
+  return y;
+}
+
+}  // namespace verisim::ruler
