@@ -12,8 +12,10 @@ namespace {
 constexpr int kIterationsMax = 60;
 /// Relative to the cost: a smaller Newton decrement is lost in rounding.
 constexpr double kRoundingOfCost = 1e-15;
-/// Largest matrix of unknowns, on the stack.
-constexpr int kUnknownsMax = 6 * ConvexStep::kBodiesMax;
+/// Largest dense matrix of unknowns, on the stack.
+constexpr int kUnknownsMax = 6 * ConvexStep::kDenseMax;
+/// Blocks below the diagonal of the sparse factor that there is room for at first, per body: a heap of boxes needs 6.
+constexpr std::size_t kBlocksPerBody = 16;
 using MatrixN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kUnknownsMax, kUnknownsMax>;
 using VectorN = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kUnknownsMax, 1>;
 
@@ -47,19 +49,28 @@ void solve_in_place(double A[6][6], double b[6]) {
 
 }  // namespace
 
-ConvexStep::ConvexStep(std::size_t rows_max) {
+ConvexStep::ConvexStep(std::size_t rows_max, std::size_t bodies_max) {
+  reserve(rows_max, bodies_max);
+}
+
+void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
   rows_.reserve(rows_max);
-  bodies_.reserve(kBodiesMax);
+  runs_.reserve(rows_max);
+  bodies_.reserve(bodies_max);
+  if (bodies_max <= kDenseMax) return;
+  factor_.reserve(bodies_max, kBlocksPerBody * bodies_max);
+  unknowns_.reserve(6 * bodies_max);
 }
 
 void ConvexStep::clear() {
   rows_.clear();
+  runs_.clear();
   bodies_.clear();
   left_out_ = 0;
 }
 
 int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess) {
-  VERISIM_ASSERT(bodies_.size() < kBodiesMax);
+  VERISIM_ASSERT(bodies_.size() < bodies_.capacity());
   VERISIM_ASSERT(is_symmetric(M));
   VERISIM_ASSERT(!(M.diagonal().array() <= 0).any());
   bodies_.push_back({p_WC, M, u0, guess, Vector6d::Zero()});
@@ -80,6 +91,7 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     J[4] = arm.z() * n.x() - arm.x() * n.z();
     J[5] = arm.x() * n.y() - arm.y() * n.x();
   };
+  const std::size_t begin = rows_.size();
   for (const ContactRow& from : rows) {
     if (rows_.size() == rows_.capacity()) {
       ++left_out_;
@@ -95,6 +107,7 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     std::swap(row.body[0], row.body[1]);
     std::swap(row.J[0], row.J[1]);
   }
+  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size()});
 }
 
 void ConvexStep::evaluate_gaps(double dt) {
@@ -158,7 +171,7 @@ bool ConvexStep::find_direction_of_one(double dt) {
   return !body.direction.isZero(0);
 }
 
-bool ConvexStep::find_direction_of_all(double dt) {
+bool ConvexStep::find_direction_dense(double dt) {
   const int n = 6 * static_cast<int>(bodies_.size());
   MatrixN A = MatrixN::Zero(n, n);
   VectorN b(n);
@@ -182,6 +195,91 @@ bool ConvexStep::find_direction_of_all(double dt) {
   const VectorN x = A.llt().solve(b);
   for (int i = 0; i < n; i += 6) bodies_[at(i / 6)].direction = x.segment<6>(i);
   return !x.isZero(0);
+}
+
+/// The pattern of the sparse system: it depends on which bodies have rows between them, not on which rows act.
+void ConvexStep::analyze() {
+  factor_.begin(bodies_.size());
+  for (const Run& run : runs_)
+    if (run.body[1] != kFixed) factor_.join(at(run.body[0]), at(run.body[1]));
+  coupled_ = factor_.analyze();
+  blocks_needed_ = factor_.blocks_needed();
+  unknowns_.resize(6 * bodies_.size());
+  if (coupled_) return;
+  factor_.begin(bodies_.size());
+  const bool fits = factor_.analyze();  // no blocks at all
+  VERISIM_ASSERT(fits);
+}
+
+bool ConvexStep::find_direction_sparse(double dt) {
+  factor_.clear();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    std::copy_n(body.M.data(), 36, factor_.diagonal(i).begin());
+    const Vector6d force = body.M * (body.u0 - body.u);
+    std::copy_n(force.data(), 6, &unknowns_[6 * i]);
+  }
+  for (const Run& run : runs_) add_run(run, dt);
+  factor_.factor();
+  factor_.solve(unknowns_);
+  bool any = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].direction = Eigen::Map<const Vector6d>(&unknowns_[6 * i]);
+    any = any || !bodies_[i].direction.isZero(0);
+  }
+  return any;
+}
+
+/// Adds the rows of two bodies to the sparse system. Their Jacobians differ by the bodies' centres alone: that of the
+/// second is -T times that of the first, T = (1 0; [d]x 1), where d leads from the second's centre to the first's. So
+/// only one matrix is summed.
+void ConvexStep::add_run(const Run& run, double dt) {
+  double H[6][6] = {};  // lower triangle
+  double b[6] = {};
+  bool acts = false;
+  for (std::size_t r = run.begin; r < run.end; ++r) {
+    const Row& row = rows_[r];
+    if (row.z >= 0) continue;
+    acts = true;
+    const double* J = row.J[0].data();
+    const double force = dt * row.k * row.z;
+    const double stiff = dt * dt * row.k;
+    for (int i = 0; i < 6; ++i) {
+      b[i] += force * J[i];
+      const double scaled = stiff * J[i];
+      for (int j = 0; j <= i; ++j) H[i][j] += scaled * J[j];
+    }
+  }
+  if (!acts) return;
+  const std::size_t first = at(run.body[0]);
+  Matrix6d of_first;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j <= i; ++j) of_first(i, j) = of_first(j, i) = H[i][j];
+  const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) {
+    for (std::size_t i = 0; i < 36; ++i) to[i] += from.data()[i];
+  };
+  add(factor_.diagonal(first), of_first);
+  for (std::size_t i = 0; i < 6; ++i) unknowns_[6 * first + i] -= b[i];
+  if (run.body[1] == kFixed) return;
+
+  const std::size_t second = at(run.body[1]);
+  const Vector3d d = bodies_[first].p_WC - bodies_[second].p_WC;
+  Matrix6d across = of_first;  // T H
+  for (int j = 0; j < 6; ++j)
+    across.block<3, 1>(3, j) += d.cross(Vector3d(of_first(0, j), of_first(1, j), of_first(2, j)));
+  Matrix6d of_second = across;  // T H T^T
+  for (int i = 0; i < 6; ++i)
+    of_second.block<1, 3>(i, 3) += d.cross(Vector3d(across(i, 0), across(i, 1), across(i, 2))).transpose();
+  add(factor_.diagonal(second), of_second);
+  const Vector3d push(b[0], b[1], b[2]);
+  const Vector3d turn = Vector3d(b[3], b[4], b[5]) + d.cross(push);
+  for (std::size_t i = 0; i < 3; ++i) {
+    unknowns_[6 * second + i] += push[static_cast<int>(i)];
+    unknowns_[6 * second + 3 + i] += turn[static_cast<int>(i)];
+  }
+  if (!coupled_) return;
+  add(factor_.off_diagonal(first, second),
+      factor_.is_later(second, first) ? Matrix6d(-across) : Matrix6d(-across.transpose()));
 }
 
 /// The derivatives of all gaps and of the first term of the cost along the search direction.
@@ -258,8 +356,13 @@ int ConvexStep::solve(double dt) {
   finished_ = true;
   if (bodies_.empty()) return 0;
   choose_start(dt);
+  const bool is_sparse = bodies_.size() > kDenseMax;
+  blocks_needed_ = 0;
+  if (is_sparse) analyze();
   for (int i = 0; i < kIterationsMax; ++i) {
-    const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt) : find_direction_of_all(dt);
+    const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt)
+                       : is_sparse         ? find_direction_sparse(dt)
+                                           : find_direction_dense(dt);
     if (!moves) return i;
     prepare_line_search(dt);
     if (has_converged()) return i;

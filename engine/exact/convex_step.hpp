@@ -7,8 +7,9 @@
 //
 // This is the penalty method with forces at the end of the step instead of its beginning; it is stable for any
 // stiffness. The cost is strictly convex, so semi-smooth Newton with a line search converges to its one minimum. Each
-// iteration is one Cholesky solve with 6 unknowns per body. The same formulation with friction: Castro et al., "An
-// unconstrained convex formulation of compliant contact" (SAP), 2022.
+// iteration is one Cholesky solve with 6 unknowns per body: dense for a few bodies, sparse for more
+// (block_cholesky.hpp). The same formulation with friction: Castro et al., "An unconstrained convex formulation of
+// compliant contact" (SAP), 2022.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor.
 // Sums are taken in the order in which rows were added.
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "engine/base/pose.hpp"
+#include "engine/exact/block_cholesky.hpp"
 #include "engine/exact/contact_rows.hpp"
 
 namespace verisim::exact {
@@ -29,9 +31,15 @@ inline constexpr int kFixed = -1;
 
 class ConvexStep {
  public:
-  static constexpr int kBodiesMax = 8;  ///< bodies of one problem
+  static constexpr int kDenseMax = 8;  ///< up to so many bodies the Newton system is one dense matrix
 
-  explicit ConvexStep(std::size_t rows_max);
+  /// Room as reserve(rows_max, bodies_max).
+  explicit ConvexStep(std::size_t rows_max, std::size_t bodies_max = kDenseMax);
+
+  /// Room for so many rows and bodies of one problem; more than now, never less. It allocates: between steps.
+  void reserve(std::size_t rows_max, std::size_t bodies_max);
+  /// Room for so many blocks of a sparse factor below its diagonal. It allocates: between steps.
+  void reserve_blocks(std::size_t blocks) { factor_.reserve(0, blocks); }
 
   /// Removes all bodies and rows. Nothing is kept: the answer depends on this step alone.
   void clear();
@@ -39,7 +47,7 @@ class ConvexStep {
   /// @param M   about the centre of mass
   /// @param u0  velocity that the body would have without contact
   /// @param guess  velocity to start from: any finite one; that of the last step saves iterations
-  /// @pre fewer than kBodiesMax bodies so far; M is symmetric positive definite  @returns the body's number
+  /// @pre fewer than bodies_max bodies so far; M is symmetric positive definite  @returns the body's number
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess);
 
   /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
@@ -63,6 +71,10 @@ class ConvexStep {
   [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
   /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.
   [[nodiscard]] bool finished() const { return finished_; }
+  /// Blocks of the sparse factor of the last solve; 0: it was dense. Above blocks_max() there was no room for them: the
+  /// search for the minimum then took each body by itself, which takes many more iterations.
+  [[nodiscard]] std::size_t blocks_needed() const { return blocks_needed_; }
+  [[nodiscard]] std::size_t blocks_max() const { return factor_.blocks_max(); }
 
  private:
   struct Body {
@@ -77,6 +89,11 @@ class ConvexStep {
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
   };
+  /// Rows between the same two bodies, one after the other.
+  struct Run {
+    std::array<int, 2> body;  ///< as of its rows
+    std::size_t begin, end;
+  };
   /// The cost along the search direction and its first two derivatives, at step length t.
   struct LineValue {
     double cost, slope, curvature;
@@ -86,7 +103,10 @@ class ConvexStep {
   void evaluate_gaps(double dt);
   [[nodiscard]] double cost() const;
   bool find_direction_of_one(double dt);
-  bool find_direction_of_all(double dt);
+  bool find_direction_dense(double dt);
+  bool find_direction_sparse(double dt);
+  void analyze();
+  void add_run(const Run& run, double dt);
   void prepare_line_search(double dt);
   [[nodiscard]] LineValue value_along(double t) const;
   [[nodiscard]] bool has_converged() const;
@@ -94,7 +114,12 @@ class ConvexStep {
   bool advance(double t);
 
   std::vector<Row> rows_;
+  std::vector<Run> runs_;
   std::vector<Body> bodies_;
+  BlockCholesky factor_;
+  std::vector<double> unknowns_;  ///< of the sparse system, 6 per body
+  bool coupled_ = false;          ///< is there room for the blocks of pairs?
+  std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
   bool finished_ = true;
   double inertia_cost_ = 0, inertia_slope_ = 0, inertia_curvature_ = 0;  ///< of the first term along the direction

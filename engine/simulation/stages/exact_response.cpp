@@ -23,7 +23,7 @@ double speed_of(const Body& body, const Vector6d& u) {
 void ExactResponse::add_link(const PairMethods& methods, std::size_t l) {
   VERISIM_ASSERT(l == links_.size());
   links_.emplace_back();
-  if (!solver_ && methods.is_precise(l)) solver_ = std::make_unique<exact::ConvexStep>(kRowsMax);
+  if (!solver_ && methods.is_precise(l)) solver_ = std::make_unique<exact::ConvexStep>(kRowsMax, bodies_.size());
 }
 
 void ExactResponse::solve(const World& world, const Neighbours& neighbours, const PairMethods& methods,
