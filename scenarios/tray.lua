@@ -5,7 +5,7 @@ local p = params{
   side = 0.03,              -- m
   tray = 0.2,               -- m, inner side; what does not fit into one layer heaps up
   wall = 0.12,              -- m, height of the walls
-  apart = 0.045,            -- m, between the boxes' centres at the start: more than their diagonal by half leaves them apart
+  apart = 0.053,            -- m, between the boxes' centres at the start: more than their diagonals, so that none overlap
   tilt = 1,                 -- of the largest angle, 3 rad, by which a box is turned at the start
   voxelsize = 0.005,        -- m
   timestep = 0.001,         -- s
@@ -32,7 +32,7 @@ for i = 0, p.boxes - 1 do
   local axis = Axis{math.random() - 0.5, math.random() - 0.5, math.random() - 0.5}
   boxes[i + 1] = addObject{
     name = "box" .. i + 1, density = 1000, voxelsize = p.voxelsize,
-    position = {near(x), near(y), p.side + z * p.apart * 1.2},
+    position = {near(x), near(y), p.side + z * p.apart},
     orientation = AngleAxis(p.tilt * 3 * math.random(), axis),
     Solid.box{p.side, p.side, p.side},
   }

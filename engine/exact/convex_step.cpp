@@ -1,6 +1,7 @@
 #include "engine/exact/convex_step.hpp"
 
 #include <Eigen/Cholesky>
+#include <limits>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -12,6 +13,11 @@ namespace {
 constexpr int kIterationsMax = 60;
 /// Relative to the cost: a smaller Newton decrement is lost in rounding.
 constexpr double kRoundingOfCost = 1e-15;
+/// While it is hit a row's stiffness is at least that of the lighter body's mass times this by dt^2: the rebound is
+/// right to about (1 + 1 / e) of its inverse.
+constexpr double kRigid = 1e5;
+/// Of the speed of approach times dt: a row that overlaps by more slides, and is not hit.
+constexpr double kOverlapOfHit = 0.25;
 /// Largest dense matrix of unknowns, on the stack.
 constexpr int kUnknownsMax = 6 * ConvexStep::kDenseMax;
 /// Blocks below the diagonal of the sparse factor that there is room for at first, per body: a heap of boxes needs 6.
@@ -69,19 +75,20 @@ void ConvexStep::clear() {
   left_out_ = 0;
 }
 
-int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess) {
+int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before) {
   VERISIM_ASSERT(bodies_.size() < bodies_.capacity());
   VERISIM_ASSERT(is_symmetric(M));
   VERISIM_ASSERT(!(M.diagonal().array() <= 0).any());
-  bodies_.push_back({p_WC, M, u0, guess, Vector6d::Zero()});
+  bodies_.push_back({p_WC, M, u0, before, before, Vector6d::Zero()});
   return static_cast<int>(bodies_.size()) - 1;
 }
 
-void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second) {
+void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second, double restitution) {
+  VERISIM_ASSERT(is_fraction(restitution));
   VERISIM_ASSERT(first != second);
   VERISIM_ASSERT(std::min(first, second) >= kFixed);
   VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));
-  const auto rate = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
+  const auto set = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
     const Vector3d n = sign * row.normal;
     const Vector3d arm = row.point - bodies_[at(body)].p_WC;
     J[0] = n.x();
@@ -101,21 +108,17 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     row.g = from.gap;
     row.k = from.stiffness;
     row.body = {second, first};
-    if (second != kFixed) rate(from, second, 1, row.J[0]);
-    if (first != kFixed) rate(from, first, -1, row.J[1]);
+    if (second != kFixed) set(from, second, 1, row.J[0]);
+    if (first != kFixed) set(from, first, -1, row.J[1]);
     if (second != kFixed) continue;
     std::swap(row.body[0], row.body[1]);
     std::swap(row.J[0], row.J[1]);
   }
-  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size()});
+  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size(), restitution});
 }
 
 void ConvexStep::evaluate_gaps(double dt) {
-  for (Row& row : rows_) {
-    double rate = row.J[0].dot(bodies_[at(row.body[0])].u);
-    if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].u);
-    row.z = row.g + dt * rate;
-  }
+  for (Row& row : rows_) row.z = row.g + dt * rate(row, &Body::u);
 }
 
 double ConvexStep::cost() const {
@@ -128,15 +131,15 @@ double ConvexStep::cost() const {
   return 0.5 * sum;
 }
 
-/// Starts from the guess or from the motion without contact, whichever costs less.
+/// Starts from the velocity before or from the motion without contact, whichever costs less.
 void ConvexStep::choose_start(double dt) {
   evaluate_gaps(dt);
-  const double cost_of_guess = cost();
-  for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 the guess
+  const double cost_of_before = cost();
+  for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 that before
   evaluate_gaps(dt);
   double cost_of_free = 0;
   for (const Row& row : rows_) cost_of_free += 0.5 * row.k * std::min(0.0, row.z) * std::min(0.0, row.z);
-  const bool starts_free = cost_of_free <= cost_of_guess;
+  const bool starts_free = cost_of_free <= cost_of_before;
   for (Body& body : bodies_) {
     std::swap(body.u, body.u0);
     if (starts_free) body.u = body.u0;
@@ -292,11 +295,7 @@ void ConvexStep::prepare_line_search(double dt) {
     inertia_slope_ += off.dot(push);
     inertia_curvature_ += body.direction.dot(push);
   }
-  for (Row& row : rows_) {
-    double rate = row.J[0].dot(bodies_[at(row.body[0])].direction);
-    if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].direction);
-    row.dz = dt * rate;
-  }
+  for (Row& row : rows_) row.dz = dt * rate(row, &Body::direction);
 }
 
 ConvexStep::LineValue ConvexStep::value_along(double t) const {
@@ -351,14 +350,8 @@ bool ConvexStep::advance(double t) {
   return same;
 }
 
-int ConvexStep::solve(double dt) {
-  VERISIM_ASSERT(is_positive(dt));
-  finished_ = true;
-  if (bodies_.empty()) return 0;
-  choose_start(dt);
+int ConvexStep::minimize(double dt) {
   const bool is_sparse = bodies_.size() > kDenseMax;
-  blocks_needed_ = 0;
-  if (is_sparse) analyze();
   for (int i = 0; i < kIterationsMax; ++i) {
     const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt)
                        : is_sparse         ? find_direction_sparse(dt)
@@ -375,19 +368,123 @@ int ConvexStep::solve(double dt) {
   return kIterationsMax;
 }
 
+int ConvexStep::solve(double dt, double threshold) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(is_positive(threshold));
+  finished_ = true;
+  hit_ = false;
+  blocks_needed_ = 0;
+  if (bodies_.empty()) return 0;
+  note_hits(dt, threshold);
+  choose_start(dt);
+  if (bodies_.size() > kDenseMax) analyze();
+  int iterations = minimize(dt);
+  if (getenv("DBG") && bodies_.size() > 8) fprintf(stderr, "DBG n=%zu rows=%zu runs=%zu blocks=%zu it=%d\n", bodies_.size(), rows_.size(), runs_.size(), blocks_needed_, iterations);
+  for (Body& body : bodies_) body.during = body.u;
+  for (Row& row : rows_) {
+    row.force = -row.k * std::min(0.0, row.z);
+    row.gap_at_end = row.z;
+  }
+  if (hit_ && begin_rebound(dt)) {
+    iterations += minimize(dt);
+    end_rebound();
+  }
+  sum_up();
+  return iterations;
+}
+
+double ConvexStep::rate(const Row& row, Vector6d Body::*velocity) const {
+  double rate = row.J[0].dot(bodies_[at(row.body[0])].*velocity);
+  if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].*velocity);
+  return rate;
+}
+
+/// Finds the rows that are hit if they close within the step, and makes them rigid.
+void ConvexStep::note_hits(double dt, double threshold) {
+  for (const Run& run : runs_) {
+    if (run.restitution == 0) continue;
+    double stiffest = 0;
+    for (std::size_t r = run.begin; r < run.end; ++r) stiffest = std::max(stiffest, rows_[r].k);
+    double mass = bodies_[at(run.body[0])].M(0, 0);
+    if (run.body[1] != kFixed) mass = std::min(mass, bodies_[at(run.body[1])].M(0, 0));
+    // The same factor for all rows of the pair: one that fades in or out keeps its weight.
+    const double factor = std::max(1.0, kRigid * mass / (dt * dt) / stiffest);
+    for (std::size_t r = run.begin; r < run.end; ++r) {
+      Row& row = rows_[r];
+      const double approach = -rate(row, &Body::before);
+      if (!(approach > threshold) || row.g < -kOverlapOfHit * approach * dt) continue;
+      row.asked = run.restitution * approach;
+      row.k *= factor;
+      hit_ = true;
+    }
+  }
+}
+
+/// From the velocities during the step to the problem of those at its end. False if no row that was hit has closed.
+bool ConvexStep::begin_rebound(double dt) {
+  bool any = false;
+  for (const Row& row : rows_) any = any || (row.asked > 0 && row.z < 0);
+  hit_ = any;
+  if (!any) return false;
+  for (Row& row : rows_) {
+    if (row.z >= 0) {
+      row.g = std::numeric_limits<double>::infinity();  // what has not closed is the next step's
+    } else if (row.asked > 0) {
+      row.g = -dt * row.asked;
+    }
+  }
+  evaluate_gaps(dt);
+  return true;
+}
+
+/// Takes as much of the rebound as creates no energy. The work of the contacts is that of their impulse A (u - u0) along
+/// the mean of the velocities before and after: a parabola in the fraction s of the rebound that is taken.
+void ConvexStep::end_rebound() {
+  double held = 0;  // J, by springs at the start
+  for (const Row& row : rows_)
+    if (row.force > 0 && row.asked == 0) held += 0.5 * row.k * std::min(0.0, row.g) * std::min(0.0, row.g);
+  double work = 0;  // J, without rebound
+  double linear = 0;
+  double quadratic = 0;
+  for (const Body& body : bodies_) {
+    const Vector6d more = body.u - body.during;
+    const Vector6d impulse = body.M * (body.during - body.u0);
+    const Vector6d impulse_more = body.M * more;
+    const Vector6d twice_mean = body.before + body.during;
+    work += 0.5 * impulse.dot(twice_mean);
+    linear += 0.5 * (impulse.dot(more) + impulse_more.dot(twice_mean));
+    quadratic += 0.5 * impulse_more.dot(more);
+  }
+  const double left = std::max(held - work, 0.0);  // s linear + s^2 quadratic is to stay below
+  double s = 1;
+  if (linear + quadratic > left)
+    s = std::clamp(2 * left / (linear + std::sqrt(linear * linear + 4 * quadratic * left)), 0.0, 1.0);
+  for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
+  for (Row& row : rows_) row.force += s * (-row.k * std::min(0.0, row.z) - row.force);
+}
+
+void ConvexStep::sum_up() {
+  for (const Row& row : rows_) {
+    if (row.force == 0) continue;
+    for (std::size_t side = 0; side < 2; ++side)
+      if (row.body[side] != kFixed) bodies_[at(row.body[side])].push += row.force * row.J[side];
+  }
+}
+
 const Vector6d& ConvexStep::velocity(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
+  return bodies_[at(body)].during;
+}
+
+const Vector6d& ConvexStep::velocity_after(int body) const {
   VERISIM_ASSERT(at(body) < bodies_.size());
   return bodies_[at(body)].u;
 }
 
 Wrench ConvexStep::wrench(int body) const {
   VERISIM_ASSERT(at(body) < bodies_.size());
-  Vector6d sum = Vector6d::Zero();
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    for (std::size_t side = 0; side < 2; ++side)
-      if (rows_[i].body[side] == body) sum += force(i) * rows_[i].J[side];
-  }
-  return {sum.head<3>(), sum.tail<3>()};
+  const Vector6d& push = bodies_[at(body)].push;
+  return {push.head<3>(), push.tail<3>()};
 }
 
 }  // namespace verisim::exact

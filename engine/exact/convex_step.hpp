@@ -11,8 +11,20 @@
 // (block_cholesky.hpp). The same formulation with friction: Castro et al., "An unconstrained convex formulation of
 // compliant contact" (SAP), 2022.
 //
-// World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor.
-// Sums are taken in the order in which rows were added.
+// Impacts. The velocity u above is zero across a contact that closes: an inelastic blow. Rows with a restitution e rebound
+// by Newton's law of impact, as in Moreau and Jean's time stepping (Acary and Brogliato, "Numerical Methods for
+// Nonsmooth Dynamical Systems", 2008, chapter 10): the bodies move with u, and the step ends with the velocity w that
+// minimises the same cost over the rows that push, where those that were hit ask for J w >= e v instead. v is the speed
+// of approach at the start of the step.
+//   - A row is hit if v is above the threshold speed and it does not overlap by more than a quarter of v dt. A body that
+//     lies has no speed of approach; one that slides along a curved path has, but overlaps by half of v dt.
+//   - While it is hit a row is as stiff as rigid bodies: a blow is over within the step, whatever the stiffness.
+//   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
+//     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
+//     what is between them.
+//
+// World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
+// in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
 #pragma once
 
 #include <algorithm>
@@ -46,27 +58,36 @@ class ConvexStep {
 
   /// @param M   about the centre of mass
   /// @param u0  velocity that the body would have without contact
-  /// @param guess  velocity to start from: any finite one; that of the last step saves iterations
+  /// @param before  velocity at the start of the step: speeds of approach are those that it gives, and the search for
+  ///        the minimum may begin there
   /// @pre fewer than bodies_max bodies so far; M is symmetric positive definite  @returns the body's number
-  int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess);
+  int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before);
 
   /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
+  /// @param restitution  e, in [0, 1]; 0: none of the rows is ever hit
   /// @pre both are numbers from add_body or kFixed, and not the same
-  void add_rows(std::span<const ContactRow> rows, int first, int second);
+  void add_rows(std::span<const ContactRow> rows, int first, int second, double restitution = 0);
 
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
-  /// 20 rows that act. @pre dt is finite and above 0
-  int solve(double dt);
+  /// 20 rows that act. @param threshold  m/s, > 0: a slower approach is no impact
+  /// @pre dt is finite and above 0
+  int solve(double dt, double threshold = kThreshold);
+  static constexpr double kThreshold = 0.01;  ///< m/s
 
   /// @pre body is a number from add_body, here and below
+  /// The velocity with which the body moves during the step.
   [[nodiscard]] const Vector6d& velocity(int body) const;
+  /// The velocity that it has at the end: the same but where a row was hit.
+  [[nodiscard]] const Vector6d& velocity_after(int body) const;
+  [[nodiscard]] bool was_hit() const { return hit_; }  ///< any row, in the last solve
   /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
   [[nodiscard]] Wrench wrench(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
-  [[nodiscard]] double force(std::size_t row) const { return -rows_[row].k * std::min(0.0, rows_[row].z); }
+  [[nodiscard]] double force(std::size_t row) const { return rows_[row].force; }
   /// Its linearised gap at the end of the step [m].
-  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].z; }
+  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].gap_at_end; }
   [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
+  [[nodiscard]] std::size_t rows_max() const { return rows_.capacity(); }
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
   [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
   /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.
@@ -80,7 +101,9 @@ class ConvexStep {
   struct Body {
     Vector3d p_WC;
     Matrix6d M;
-    Vector6d u0, u, direction;
+    Vector6d u0, before, u, direction;
+    Vector6d during = Vector6d::Zero();  ///< velocity()
+    Vector6d push = Vector6d::Zero();    ///< wrench()
   };
   struct Row {
     std::array<Vector6d, 2> J;  ///< Jacobian: rate of the gap by the bodies' velocities
@@ -88,17 +111,26 @@ class ConvexStep {
     double g, k;
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
+    double force = 0, gap_at_end = 0;
+    double asked = 0;  ///< m/s, J w at least; 0: it was not hit
   };
   /// Rows between the same two bodies, one after the other.
   struct Run {
     std::array<int, 2> body;  ///< as of its rows
     std::size_t begin, end;
+    double restitution;
   };
   /// The cost along the search direction and its first two derivatives, at step length t.
   struct LineValue {
     double cost, slope, curvature;
   };
 
+  int minimize(double dt);
+  void note_hits(double dt, double threshold);
+  [[nodiscard]] bool begin_rebound(double dt);
+  void end_rebound();
+  void sum_up();
+  [[nodiscard]] double rate(const Row& row, Vector6d Body::*velocity) const;
   void choose_start(double dt);
   void evaluate_gaps(double dt);
   [[nodiscard]] double cost() const;
@@ -121,7 +153,7 @@ class ConvexStep {
   bool coupled_ = false;          ///< is there room for the blocks of pairs?
   std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
-  bool finished_ = true;
+  bool finished_ = true, hit_ = false;
   double inertia_cost_ = 0, inertia_slope_ = 0, inertia_curvature_ = 0;  ///< of the first term along the direction
 };
 

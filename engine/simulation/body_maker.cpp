@@ -95,6 +95,7 @@ void BodyMaker::make(World& world, std::size_t i) {
     if (body.method->needs_precise_surfaces() && description.use_brep) {
       exact::BodyOptions options;
       options.spacing = description.voxel_size;
+      options.line_stiffness = world.parameters.exact_stiffness;
       auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
       if (precise->has_precise_faces()) body.exact = std::move(precise);
     }

@@ -46,6 +46,9 @@ void check(const SimulationParameters& p) {
   positive(p.contact_stiffness, "contactStiffness", "N/m");
   if (!std::isfinite(p.contact_damping_ratio) || p.contact_damping_ratio < 0)
     fail(ErrorKind::input, "contactDampingRatio is {} but must be finite and not negative", p.contact_damping_ratio);
+  positive(p.exact_stiffness, "exactStiffness", "N/m^2");
+  if (!is_fraction(p.restitution)) fail(ErrorKind::input, "restitution is {} but must be from 0 to 1", p.restitution);
+  positive(p.restitution_speed, "restitutionSpeed", "m/s");
   if (!p.gravity.allFinite()) fail(ErrorKind::input, "gravity is not finite");
   if (p.duration) positive(*p.duration, "duration", "s");
 }
