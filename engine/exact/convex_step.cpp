@@ -18,6 +18,8 @@ constexpr double kRoundingOfCost = 1e-15;
 constexpr double kRigid = 1e5;
 /// Of the speed of approach times dt: a row that overlaps by more slides, and is not hit.
 constexpr double kOverlapOfHit = 0.25;
+/// m. By so much a row may overlap more than is known without being late: a step along a curve does that.
+constexpr double kUnknown = 1e-5;
 /// Largest dense matrix of unknowns, on the stack.
 constexpr int kUnknownsMax = 6 * ConvexStep::kDenseMax;
 /// Blocks below the diagonal of the sparse factor that there is room for at first, per body: a heap of boxes needs 6.
@@ -83,8 +85,9 @@ int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d
   return static_cast<int>(bodies_.size()) - 1;
 }
 
-void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second, double restitution) {
-  VERISIM_ASSERT(is_fraction(restitution));
+void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair) {
+  VERISIM_ASSERT(is_fraction(pair.restitution));
+  VERISIM_ASSERT(pair.overlap >= 0);
   VERISIM_ASSERT(first != second);
   VERISIM_ASSERT(std::min(first, second) >= kFixed);
   VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));
@@ -114,7 +117,7 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     std::swap(row.body[0], row.body[1]);
     std::swap(row.J[0], row.J[1]);
   }
-  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size(), restitution});
+  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size(), pair});
 }
 
 void ConvexStep::evaluate_gaps(double dt) {
@@ -200,13 +203,23 @@ bool ConvexStep::find_direction_dense(double dt) {
   return !x.isZero(0);
 }
 
-/// The pattern of the sparse system: it depends on which bodies have rows between them, not on which rows act.
+/// The pattern of the sparse system grows with the pairs of bodies of which rows act. True if it has grown.
+bool ConvexStep::join_acting_runs() {
+  bool grown = false;
+  for (Run& run : runs_) {
+    if (run.joined || run.body[1] == kFixed) continue;
+    for (std::size_t r = run.begin; r < run.end && !run.joined; ++r) run.joined = rows_[r].z < 0;
+    grown = grown || run.joined;
+  }
+  return grown;
+}
+
 void ConvexStep::analyze() {
   factor_.begin(bodies_.size());
   for (const Run& run : runs_)
-    if (run.body[1] != kFixed) factor_.join(at(run.body[0]), at(run.body[1]));
+    if (run.joined) factor_.join(at(run.body[0]), at(run.body[1]));
   coupled_ = factor_.analyze();
-  blocks_needed_ = factor_.blocks_needed();
+  blocks_needed_ = std::max(blocks_needed_, factor_.blocks_needed());
   unknowns_.resize(6 * bodies_.size());
   if (coupled_) return;
   factor_.begin(bodies_.size());
@@ -215,6 +228,7 @@ void ConvexStep::analyze() {
 }
 
 bool ConvexStep::find_direction_sparse(double dt) {
+  if (join_acting_runs() || unknowns_.empty()) analyze();
   factor_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Body& body = bodies_[i];
@@ -372,12 +386,12 @@ int ConvexStep::solve(double dt, double threshold) {
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(is_positive(threshold));
   finished_ = true;
-  hit_ = false;
+  hit_ = late_ = false;
   blocks_needed_ = 0;
+  unknowns_.clear();
   if (bodies_.empty()) return 0;
   note_hits(dt, threshold);
   choose_start(dt);
-  if (bodies_.size() > kDenseMax) analyze();
   int iterations = minimize(dt);
   if (getenv("DBG") && bodies_.size() > 8) fprintf(stderr, "DBG n=%zu rows=%zu runs=%zu blocks=%zu it=%d\n", bodies_.size(), rows_.size(), runs_.size(), blocks_needed_, iterations);
   for (Body& body : bodies_) body.during = body.u;
@@ -399,37 +413,47 @@ double ConvexStep::rate(const Row& row, Vector6d Body::*velocity) const {
   return rate;
 }
 
-/// Finds the rows that are hit if they close within the step, and makes them rigid.
+/// Finds the rows that are hit if they close within the step, and makes them rigid; and those that are late.
 void ConvexStep::note_hits(double dt, double threshold) {
-  for (const Run& run : runs_) {
-    if (run.restitution == 0) continue;
-    double stiffest = 0;
-    for (std::size_t r = run.begin; r < run.end; ++r) stiffest = std::max(stiffest, rows_[r].k);
-    double mass = bodies_[at(run.body[0])].M(0, 0);
-    if (run.body[1] != kFixed) mass = std::min(mass, bodies_[at(run.body[1])].M(0, 0));
-    // The same factor for all rows of the pair: one that fades in or out keeps its weight.
-    const double factor = std::max(1.0, kRigid * mass / (dt * dt) / stiffest);
-    for (std::size_t r = run.begin; r < run.end; ++r) {
-      Row& row = rows_[r];
-      const double approach = -rate(row, &Body::before);
-      if (!(approach > threshold) || row.g < -kOverlapOfHit * approach * dt) continue;
-      row.asked = run.restitution * approach;
+  for (const Run& run : runs_)
+    if (run.pair.restitution > 0 || run.pair.overlap < std::numeric_limits<double>::infinity())
+      note_hits(run, dt, threshold);
+}
+
+void ConvexStep::note_hits(const Run& run, double dt, double threshold) {
+  double stiffest = 0;
+  for (std::size_t r = run.begin; r < run.end; ++r) stiffest = std::max(stiffest, rows_[r].k);
+  double mass = bodies_[at(run.body[0])].M(0, 0);
+  if (run.body[1] != kFixed) mass = std::min(mass, bodies_[at(run.body[1])].M(0, 0));
+  // The same factor for all rows of the pair: one that fades in or out keeps its weight.
+  const double factor = std::max(1.0, kRigid * mass / (dt * dt) / stiffest);
+  for (std::size_t r = run.begin; r < run.end; ++r) {
+    Row& row = rows_[r];
+    const double known = run.pair.overlap + kUnknown;
+    if (run.pair.restitution == 0 && -row.g <= known) continue;
+    const double approach = -rate(row, &Body::before);
+    if (-row.g > known + std::max(0.0, approach * dt)) {
+      row.late = late_ = true;
+      row.asked = 0;
+      row.g = std::max(row.g, -run.pair.overlap - kPushOut * dt);
+    } else if (run.pair.restitution > 0 && approach > threshold && -row.g <= kOverlapOfHit * approach * dt) {
+      row.asked = run.pair.restitution * approach;
       row.k *= factor;
-      hit_ = true;
     }
+    hit_ = hit_ || row.asked >= 0;
   }
 }
 
 /// From the velocities during the step to the problem of those at its end. False if no row that was hit has closed.
 bool ConvexStep::begin_rebound(double dt) {
   bool any = false;
-  for (const Row& row : rows_) any = any || (row.asked > 0 && row.z < 0);
+  for (const Row& row : rows_) any = any || (row.asked >= 0 && row.z < 0);
   hit_ = any;
   if (!any) return false;
   for (Row& row : rows_) {
     if (row.z >= 0) {
       row.g = std::numeric_limits<double>::infinity();  // what has not closed is the next step's
-    } else if (row.asked > 0) {
+    } else if (row.asked >= 0) {
       row.g = -dt * row.asked;
     }
   }
@@ -442,7 +466,7 @@ bool ConvexStep::begin_rebound(double dt) {
 void ConvexStep::end_rebound() {
   double held = 0;  // J, by springs at the start
   for (const Row& row : rows_)
-    if (row.force > 0 && row.asked == 0) held += 0.5 * row.k * std::min(0.0, row.g) * std::min(0.0, row.g);
+    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * std::min(0.0, row.g) * std::min(0.0, row.g);
   double work = 0;  // J, without rebound
   double linear = 0;
   double quadratic = 0;
@@ -457,7 +481,7 @@ void ConvexStep::end_rebound() {
   }
   const double left = std::max(held - work, 0.0);  // s linear + s^2 quadratic is to stay below
   double s = 1;
-  if (linear + quadratic > left)
+  if (!late_ && linear + quadratic > left)  // u of late rows is of no use: it pushes them apart
     s = std::clamp(2 * left / (linear + std::sqrt(linear * linear + 4 * quadratic * left)), 0.0, 1.0);
   for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
   for (Row& row : rows_) row.force += s * (-row.k * std::min(0.0, row.z) - row.force);

@@ -11,17 +11,20 @@
 // (block_cholesky.hpp). The same formulation with friction: Castro et al., "An unconstrained convex formulation of
 // compliant contact" (SAP), 2022.
 //
-// Impacts. The velocity u above is zero across a contact that closes: an inelastic blow. Rows with a restitution e rebound
-// by Newton's law of impact, as in Moreau and Jean's time stepping (Acary and Brogliato, "Numerical Methods for
-// Nonsmooth Dynamical Systems", 2008, chapter 10): the bodies move with u, and the step ends with the velocity w that
-// minimises the same cost over the rows that push, where those that were hit ask for J w >= e v instead. v is the speed
-// of approach at the start of the step.
-//   - A row is hit if v is above the threshold speed and it does not overlap by more than a quarter of v dt. A body that
-//     lies has no speed of approach; one that slides along a curved path has, but overlaps by half of v dt.
+// Impacts. The velocity u above is zero across a contact that closes: an inelastic blow. Where rows are hit the bodies
+// move with u, but the step ends with the velocity w that minimises the same cost over the rows that push, where those
+// that were hit ask for J w >= e v instead: Newton's law of impact, as in Moreau and Jean's time stepping (Acary and
+// Brogliato, "Numerical Methods for Nonsmooth Dynamical Systems", 2008, chapter 10). v is the speed of approach at the
+// start of the step, e the restitution.
+//   - A row with e > 0 is hit if v is above the threshold speed and it does not overlap by more than a quarter of v dt.
+//     A body that lies has no speed of approach; one that slides along a curved path has, but overlaps by half of v dt.
 //   - While it is hit a row is as stiff as rigid bodies: a blow is over within the step, whatever the stiffness.
 //   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
 //     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
 //     what is between them.
+// Late rows. A row that overlaps by more than the pair did before and the approach explains was not there when it should
+// have been. Nothing compressed it, so it has no energy to give: it moves the bodies apart, no faster than kPushOut, and
+// asks for J w >= 0.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
@@ -29,6 +32,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -64,9 +68,15 @@ class ConvexStep {
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before);
 
   /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
-  /// @param restitution  e, in [0, 1]; 0: none of the rows is ever hit
+  /// What is known of two bodies beside their rows.
+  struct Pair {
+    double restitution = 0;                                     ///< e, in [0, 1]; 0: none of the rows is ever hit
+    double overlap = std::numeric_limits<double>::infinity();  ///< m, before: deeper rows may be late
+  };
   /// @pre both are numbers from add_body or kFixed, and not the same
-  void add_rows(std::span<const ContactRow> rows, int first, int second, double restitution = 0);
+  void add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair);
+  void add_rows(std::span<const ContactRow> rows, int first, int second) { add_rows(rows, first, second, {}); }
+  static constexpr double kPushOut = 0.5;  ///< m/s
 
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
   /// 20 rows that act. @param threshold  m/s, > 0: a slower approach is no impact
@@ -79,11 +89,13 @@ class ConvexStep {
   [[nodiscard]] const Vector6d& velocity(int body) const;
   /// The velocity that it has at the end: the same but where a row was hit.
   [[nodiscard]] const Vector6d& velocity_after(int body) const;
-  [[nodiscard]] bool was_hit() const { return hit_; }  ///< any row, in the last solve
+  [[nodiscard]] bool was_hit() const { return hit_; }  ///< any row, or late and pushing, in the last solve
   /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
   [[nodiscard]] Wrench wrench(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
   [[nodiscard]] double force(std::size_t row) const { return rows_[row].force; }
+  /// Was it late? Then its overlap is none that a later row may have.
+  [[nodiscard]] bool is_late(std::size_t row) const { return rows_[row].late; }
   /// Its linearised gap at the end of the step [m].
   [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].gap_at_end; }
   [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
@@ -98,6 +110,7 @@ class ConvexStep {
   [[nodiscard]] std::size_t blocks_max() const { return factor_.blocks_max(); }
 
  private:
+  static constexpr double kNothing = -1;
   struct Body {
     Vector3d p_WC;
     Matrix6d M;
@@ -112,13 +125,15 @@ class ConvexStep {
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
     double force = 0, gap_at_end = 0;
-    double asked = 0;  ///< m/s, J w at least; 0: it was not hit
+    double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
+    bool late = false;
   };
   /// Rows between the same two bodies, one after the other.
   struct Run {
     std::array<int, 2> body;  ///< as of its rows
     std::size_t begin, end;
-    double restitution;
+    Pair pair;
+    bool joined = false;  ///< in the pattern of the sparse system
   };
   /// The cost along the search direction and its first two derivatives, at step length t.
   struct LineValue {
@@ -127,6 +142,7 @@ class ConvexStep {
 
   int minimize(double dt);
   void note_hits(double dt, double threshold);
+  void note_hits(const Run& run, double dt, double threshold);
   [[nodiscard]] bool begin_rebound(double dt);
   void end_rebound();
   void sum_up();
@@ -137,6 +153,7 @@ class ConvexStep {
   bool find_direction_of_one(double dt);
   bool find_direction_dense(double dt);
   bool find_direction_sparse(double dt);
+  [[nodiscard]] bool join_acting_runs();
   void analyze();
   void add_run(const Run& run, double dt);
   void prepare_line_search(double dt);
@@ -153,7 +170,7 @@ class ConvexStep {
   bool coupled_ = false;          ///< is there room for the blocks of pairs?
   std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
-  bool finished_ = true, hit_ = false;
+  bool finished_ = true, hit_ = false, late_ = false;
   double inertia_cost_ = 0, inertia_slope_ = 0, inertia_curvature_ = 0;  ///< of the first term along the direction
 };
 

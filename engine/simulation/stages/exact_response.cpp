@@ -102,7 +102,10 @@ void ExactResponse::begin(const World& world, const Response& response) {
 void ExactResponse::find(const World& world, const Neighbours& neighbours, const PairMethods& methods,
                          FrameCost& cost) {
   for (const std::size_t l : world.near_links) {
-    links_[l] = {};
+    OfLink& of = links_[l];
+    const double overlap = of.found_in != kNone && of.found_in + 1 == world.frame ? of.overlap : 0;
+    of = {};
+    of.overlap = overlap;
     exact::ExactLink* search = methods.acting(l) != nullptr ? methods.acting(l)->precise() : nullptr;
     if (search == nullptr) continue;
     const Link& link = world.links[l];
@@ -113,7 +116,7 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
     if (!(gap(neighbours.box(link.first), neighbours.box(link.second)) <= reach)) continue;
     bodies_[link.first].solved = bodies_[link.first].solved || world.moves(first);
     bodies_[link.second].solved = bodies_[link.second].solved || world.moves(second);
-    links_[l].searched = true;
+    of.searched = true;
     if (are_apart(placed(world, link.first), placed(world, link.second), reach)) continue;
     find(world, l, *search, reach);
     cost.exact_samples += search->cost().samples;
@@ -151,6 +154,7 @@ void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& se
   };
   search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing);
   links_[l].search = &search;
+  links_[l].found_in = world.frame;
   links_[l].depth_max = search.depth_max();
 }
 
@@ -167,7 +171,7 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
   const SimulationParameters& p = world.parameters;
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next)
     solver_->add_rows(links_[l].search->rows().rows(), bodies_[world.links[l].first].in_solver,
-                      bodies_[world.links[l].second].in_solver, p.restitution);
+                      bodies_[world.links[l].second].in_solver, {p.restitution, links_[l].overlap});
   cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt, p.restitution_speed));
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
@@ -205,8 +209,10 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   const Vector3d& p_WC = world.bodies[world.links[l].second].rigid.p_WC;
   VERISIM_ASSERT(first_row <= solver_->row_count() + solver_->left_out());
   const auto& rows = of.search->rows().rows();
+  of.overlap = 0;
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
+    if (!solver_->is_late(first_row + i)) of.overlap = std::max(of.overlap, -rows[i].gap);
     if (!(force > 0)) continue;
     ++of.acting;
     const Vector3d f = force * rows[i].normal;

@@ -61,6 +61,8 @@ class ExactResponse {
     Wrench on_second;
     std::uint32_t acting = 0;
     double depth_max = 0;
+    double overlap = 0;             ///< m, of rows that were not late when there last were any
+    std::size_t found_in = kNone;  ///< frame
   };
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
