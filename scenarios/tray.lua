@@ -3,11 +3,11 @@
 local p = params{
   boxes = 100,
   side = 0.03,              -- m
-  tray = 0.2,               -- m, inner side; what does not fit into one layer heaps up
-  wall = 0.12,              -- m, height of the walls
+  tray = 0.25,              -- m, inner side; what does not fit into one layer heaps up
+  wall = 0.15,              -- m, height of the walls
   apart = 0.053,            -- m, between the boxes' centres at the start: more than their diagonals, so that none overlap
   tilt = 1,                 -- of the largest angle, 3 rad, by which a box is turned at the start
-  voxelsize = 0.005,        -- m
+  voxelsize = 0.01,         -- m
   timestep = 0.001,         -- s
   duration = 3,             -- s
   hybrid = "exact",

@@ -393,7 +393,6 @@ int ConvexStep::solve(double dt, double threshold) {
   note_hits(dt, threshold);
   choose_start(dt);
   int iterations = minimize(dt);
-  if (getenv("DBG") && bodies_.size() > 8) fprintf(stderr, "DBG n=%zu rows=%zu runs=%zu blocks=%zu it=%d\n", bodies_.size(), rows_.size(), runs_.size(), blocks_needed_, iterations);
   for (Body& body : bodies_) body.during = body.u;
   for (Row& row : rows_) {
     row.force = -row.k * std::min(0.0, row.z);
@@ -461,8 +460,8 @@ bool ConvexStep::begin_rebound(double dt) {
   return true;
 }
 
-/// Takes as much of the rebound as creates no energy. The work of the contacts is that of their impulse A (u - u0) along
-/// the mean of the velocities before and after: a parabola in the fraction s of the rebound that is taken.
+/// Takes as much of the rebound as creates no energy. The work of the contacts is that of their impulse A (u - u0)
+/// along the mean of the velocities before and after: a parabola in the fraction s of the rebound that is taken.
 void ConvexStep::end_rebound() {
   double held = 0;  // J, by springs at the start
   for (const Row& row : rows_)

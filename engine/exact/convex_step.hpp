@@ -22,9 +22,9 @@
 //   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
 //     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
 //     what is between them.
-// Late rows. A row that overlaps by more than the pair did before and the approach explains was not there when it should
-// have been. Nothing compressed it, so it has no energy to give: it moves the bodies apart, no faster than kPushOut, and
-// asks for J w >= 0.
+// Late rows. A row that overlaps by more than the pair did before and the approach explains was not there when it
+// should have been. Nothing compressed it, so it has no energy to give: it moves the bodies apart, no faster than
+// kPushOut, and asks for J w >= 0.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
@@ -70,7 +70,7 @@ class ConvexStep {
   /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
   /// What is known of two bodies beside their rows.
   struct Pair {
-    double restitution = 0;                                     ///< e, in [0, 1]; 0: none of the rows is ever hit
+    double restitution = 0;                                    ///< e, in [0, 1]; 0: none of the rows is ever hit
     double overlap = std::numeric_limits<double>::infinity();  ///< m, before: deeper rows may be late
   };
   /// @pre both are numbers from add_body or kFixed, and not the same

@@ -61,7 +61,7 @@ class ExactResponse {
     Wrench on_second;
     std::uint32_t acting = 0;
     double depth_max = 0;
-    double overlap = 0;             ///< m, of rows that were not late when there last were any
+    double overlap = 0;            ///< m, of rows that were not late when there last were any
     std::size_t found_in = kNone;  ///< frame
   };
   void begin(const World& world, const Response& response);
@@ -78,7 +78,7 @@ class ExactResponse {
   std::vector<OfBody> bodies_;
   std::vector<OfLink> links_;
   std::size_t rows_needed_ = 0, blocks_needed_ = 0;  ///< most so far, of one island
-  std::vector<std::size_t> island_;  ///< of each body: the number of its island's first body
+  std::vector<std::size_t> island_;                  ///< of each body: the number of its island's first body
 };
 
 }  // namespace verisim
