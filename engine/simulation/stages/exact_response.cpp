@@ -47,6 +47,8 @@ void ExactResponse::add_link(const World& world, const PairMethods& methods, std
 
 void ExactResponse::make_room() {
   if (!solver_) return;
+  for (OfLink& of : links_)
+    if (of.search != nullptr) of.search->make_room();
   if (kRoom * rows_needed_ > solver_->rows_max()) solver_->reserve(2 * kRoom * rows_needed_, bodies_.size());
   if (kRoom * blocks_needed_ > solver_->blocks_max()) solver_->reserve_blocks(2 * kRoom * blocks_needed_);
 }
