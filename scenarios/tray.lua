@@ -11,10 +11,13 @@ local p = params{
   timestep = 0.001,         -- s
   duration = 3,             -- s
   hybrid = "exact",
+  restitution = 0,          -- of exact contacts, 0 to 1
+  stiffness = 1.15e11,      -- of exact contacts, N/m per metre of an edge
 }
 
 defineSimulationParameters{
   allBodiesAreDynamic = true, gravity = {0, 0, -9.81}, duration = p.duration, timestep = p.timestep, hybrid = p.hybrid,
+  restitution = p.restitution, exactStiffness = p.stiffness,
 }
 
 local thick = 0.02

@@ -80,7 +80,7 @@ class ConvexStep {
 
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
   /// 20 rows that act. @param threshold  m/s, > 0: a slower approach is no impact
-  /// @pre dt is finite and above 0
+  /// @pre dt is finite and above 0; it is called once after clear()
   int solve(double dt, double threshold = kThreshold);
   static constexpr double kThreshold = 0.01;  ///< m/s
 
@@ -97,7 +97,7 @@ class ConvexStep {
   /// Was it late? Then its overlap is none that a later row may have.
   [[nodiscard]] bool is_late(std::size_t row) const { return rows_[row].late; }
   /// Its linearised gap at the end of the step [m].
-  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].gap_at_end; }
+  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].end_gap; }
   [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
   [[nodiscard]] std::size_t rows_max() const { return rows_.capacity(); }
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
@@ -110,6 +110,7 @@ class ConvexStep {
   [[nodiscard]] std::size_t blocks_max() const { return factor_.blocks_max(); }
 
  private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   static constexpr double kNothing = -1;
   struct Body {
     Vector3d p_WC;
@@ -124,7 +125,7 @@ class ConvexStep {
     double g, k;
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
-    double force = 0, gap_at_end = 0;
+    double force = 0, end_gap = 0;
     double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
     bool late = false;
   };

@@ -138,7 +138,7 @@ TEST(Stack, RestsOnItsLowestBody) {
     ConvexStep step(64, 60);
     std::vector<Vector6d> u(static_cast<std::size_t>(count), Vector6d::Zero());
     std::vector<double> gap(static_cast<std::size_t>(count));
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 4 * count * count; ++i) {  // a tall one takes longer to settle
       step.clear();
       for (const Vector6d& v : u) {
         Vector6d u0 = v;
@@ -157,7 +157,7 @@ TEST(Stack, RestsOnItsLowestBody) {
       }
     }
     for (int j = 0; j < count; ++j)
-      EXPECT_NEAR(step.force(static_cast<std::size_t>(j)), (count - j) * 9.81, tolerance(1e-5));
+      EXPECT_NEAR(step.force(static_cast<std::size_t>(j)), (count - j) * 9.81, tolerance(1e-7 * 9.81 * count));
   }
 }
 

@@ -199,6 +199,8 @@ TEST(ManyBodies, SayWhetherTheyArrivedWithoutRoomForTheFactor) {
   ASSERT_GT(step.blocks_needed(), step.blocks_max()) << "there was room: this proves nothing";
   EXPECT_TRUE(!step.finished() || unbalanced(step, M, u0) <= 1e-6);
   step.reserve_blocks(step.blocks_needed());
+  Draw again(3);
+  fill(step, again, 100, 9, M, u0);
   step.solve(kStep);
   EXPECT_TRUE(step.finished());
   EXPECT_LE(unbalanced(step, M, u0), 1e-6);
