@@ -9,7 +9,8 @@
 namespace verisim::exact {
 namespace {
 
-/// Newton's method ends after a few iterations. This bounds the time of a step with absurd numbers.
+/// Newton's method ends after a few iterations, a few dozen for a heap. This, and one per body of a heap, bounds the
+/// time of a step with absurd numbers.
 constexpr int kIterationsMax = 60;
 /// Relative to the cost: a smaller Newton decrement is lost in rounding.
 constexpr double kRoundingOfCost = 1e-15;
@@ -355,7 +356,8 @@ bool ConvexStep::advance(double t) {
 
 int ConvexStep::minimize(double dt) {
   const bool is_sparse = bodies_.size() > kDenseMax;
-  for (int i = 0; i < kIterationsMax; ++i) {
+  const int most = kIterationsMax + (is_sparse ? static_cast<int>(bodies_.size()) : 0);
+  for (int i = 0; i < most; ++i) {
     const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt)
                        : is_sparse         ? find_direction_sparse(dt)
                                            : find_direction_dense(dt);
@@ -368,7 +370,7 @@ int ConvexStep::minimize(double dt) {
     if (same && t == 1) return i + 1;
   }
   finished_ = false;
-  return kIterationsMax;
+  return most;
 }
 
 int ConvexStep::solve(double dt, double threshold) {

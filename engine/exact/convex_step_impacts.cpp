@@ -55,8 +55,11 @@ bool ConvexStep::begin_rebound(double dt) {
   hit_ = any;
   if (!any) return false;
   for (Row& row : rows_) {
-    if (row.z >= 0) {
-      row.g = std::numeric_limits<double>::infinity();  // what has not closed is the next step's
+    // What has not closed is the next step's; so is what was open, and closes only because of the blow: it is handed
+    // on.
+    const bool handed_on = row.asked < 0 && row.g > 0 && row.g + dt * rate(row, &Body::u0) > 0;
+    if (row.z >= 0 || handed_on) {
+      row.g = std::numeric_limits<double>::infinity();
     } else if (row.asked >= 0) {
       row.g = -dt * row.asked;
     }

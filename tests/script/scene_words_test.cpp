@@ -67,11 +67,13 @@ TEST(DefineSimulationParameters, RefusesWhatIsWrongWithPlaceAndRemedy) {
             std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{alignment = 'bytype'}").find("did you mean 'by-type'?"),
             std::string::npos);
-  EXPECT_NE(refusal_of("defineSimulationParameters{restitution = 1.5}").find("restitution is 1.5 but must be from 0 to 1"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of("defineSimulationParameters{restitution = 1.5}").find("restitution is 1.5 but must be from 0 to 1"),
+      std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{restitution = 0/0}"), "");
-  EXPECT_NE(refusal_of("defineSimulationParameters{exactStiffness = 0}").find("exactStiffness is 0 but must be above 0"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of("defineSimulationParameters{exactStiffness = 0}").find("exactStiffness is 0 but must be above 0"),
+      std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{reduction = 'one'}").find("; known: common-freedom, exactly-one"),
             std::string::npos);
   EXPECT_EQ(

@@ -101,8 +101,28 @@ void ExactResponse::begin(const World& world, const Response& response) {
   }
 }
 
+/// What a body may meet in this step because another one hits it first: it goes no faster then than that one, and its
+/// own rebound, let it. One body farther; the next in a row is the next step's.
+void ExactResponse::expect_blows(const World& world, const PairMethods& methods) {
+  for (OfBody& of : bodies_) of.speed_hit = of.speed;
+  for (const std::size_t l : world.near_links) {
+    if (methods.acting(l) == nullptr || methods.acting(l)->precise() == nullptr) continue;
+    const Link& link = world.links[l];
+    OfBody& first = bodies_[link.first];
+    OfBody& second = bodies_[link.second];
+    if (!world.moves(world.bodies[link.first]) || !world.moves(world.bodies[link.second])) continue;
+    if (are_apart(placed(world, link.first), placed(world, link.second),
+                  kMargin + world.dt * (first.speed + second.speed)))
+      continue;
+    const double e = world.parameters.restitution;
+    first.speed_hit = std::max(first.speed_hit, (1 + e) * second.speed + e * first.speed);
+    second.speed_hit = std::max(second.speed_hit, (1 + e) * first.speed + e * second.speed);
+  }
+}
+
 void ExactResponse::find(const World& world, const Neighbours& neighbours, const PairMethods& methods,
                          FrameCost& cost) {
+  expect_blows(world, methods);
   for (const std::size_t l : world.near_links) {
     OfLink& of = links_[l];
     const double overlap = of.found_in != kNone && of.found_in + 1 == world.frame ? of.overlap : 0;
@@ -140,7 +160,7 @@ const exact::OrientedBox& ExactResponse::placed(const World& world, std::size_t 
 double ExactResponse::closing(const World& world, const Link& link) const {
   double sum = kMargin;
   for (const std::size_t i : {link.first, link.second})
-    if (world.moves(world.bodies[i])) sum += world.dt * bodies_[i].speed;
+    if (world.moves(world.bodies[i])) sum += world.dt * bodies_[i].speed_hit;
   return sum;
 }
 

@@ -44,7 +44,8 @@ class ExactResponse {
     bool solved = false;
     ImplicitStep step;
     Vector6d velocity = Vector6d::Zero(), velocity_after = Vector6d::Zero();
-    double speed = 0;  ///< m/s, bound of that of any of its points without contact
+    double speed = 0;      ///< m/s, bound of that of any of its points without contact
+    double speed_hit = 0;  ///< m/s, likewise if another body hits it in this step
     Wrench wrench;
     Bounds box_B;
     exact::OrientedBox box;                              ///< box_B
@@ -68,6 +69,7 @@ class ExactResponse {
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
   [[nodiscard]] const exact::OrientedBox& placed(const World& world, std::size_t body);
+  void expect_blows(const World& world, const PairMethods& methods);
   void list_islands(const World& world);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
   void solve_island(const World& world, std::size_t island, FrameCost& cost);
