@@ -25,9 +25,9 @@
 //   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
 //     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
 //     what is between them.
-// Late rows. A row that overlaps by more than the pair did before and the approach explains was not there when it
-// should have been. Nothing compressed it, so it has no energy to give: it moves the bodies apart, no faster than
-// kPushOut, and asks for J w >= 0.
+// Late rows, of more than kDenseMax bodies or with restitution. A row that overlaps by more than the pair did before
+// and the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give:
+// it moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
