@@ -38,20 +38,25 @@ Wrench wrench_of(const Vector6d& column) {
 /// give.
 struct Motion {
   Vector6d middle;  ///< (u0 + u1) / 2: along it, force times displacement is exactly the change of kinetic energy
-  Vector6d during;  ///< u1: along it the body moves
+  Vector6d during;  ///< along it the body moves: u1, unless it was hit
   double turned;    ///< J, kinetic energy lost because I turns at constant angular momentum
 };
 
-/// Moves the body with the velocity `during` for dt. Angular momentum is conserved while I_W changes.
-Motion advance(RigidBody& body, const Vector6d& during, double dt) {
+/// Moves the body with the velocity `during` for dt and gives it the velocity u1. Angular momentum is conserved while
+/// I_W changes.
+Motion advance(RigidBody& body, const Vector6d& during, const Vector6d& u1, double dt) {
   const Vector6d before = stacked(body.v_C, body.omega);
-  const Vector3d omega_star = during.tail<3>();
-  const Vector3d L1 = body.inertia_W() * omega_star;
-  body.v_C = during.head<3>();
-  body.p_WC += dt * body.v_C;
-  body.R_WB = turned_freely(body, L1, dt);
+  const Vector3d omega_star = u1.tail<3>();
+  const Matrix3d inertia = body.inertia_W();
+  const Vector3d L1 = inertia * omega_star;
+  body.v_C = u1.head<3>();
+  body.p_WC += dt * during.head<3>();
+  body.R_WB = turned_freely(body, inertia * during.tail<3>(), dt);
   body.omega = body.inertia_inverse_W() * L1;
-  return {0.5 * (before + during), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
+  return {0.5 * (before + u1), during, 0.5 * omega_star.dot(L1) - 0.5 * body.omega.dot(L1)};
+}
+Motion advance(RigidBody& body, const Vector6d& u1, double dt) {
+  return advance(body, u1, u1, dt);
 }
 
 /// The potential energy that the step conserves: the coupling's, with its force `pull`, and the shadow of `external`,
@@ -244,7 +249,7 @@ ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt
 }
 
 StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
-                      const Wrench& solved, double dt) {
+                      const Wrench& solved, double dt, const Vector6d* during) {
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(!step.A.isZero(0));
   const double energy_before = potential_at_start(body, loads, 0);
@@ -255,7 +260,7 @@ StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& s
   const ContactEnd end{step.with_contact ? 1.0 : 0.0, u0, u1, step.with_mutual ? 1.0 : 0.0};
   const Wrench spring = wrench_of(step.spring - dt * (step.K * u1));
   const Wrench damper = wrench_of(step.damper + step.D * (u0 - u1));
-  const Motion motion = advance(body, u1, dt);
+  const Motion motion = advance(body, during == nullptr ? u1 : *during, u1, dt);
   StepWork work = work_of_step(body, loads, motion, spring, damper, contact, energy_before, dt, 0);
   work.contact_end = end;
   return work;

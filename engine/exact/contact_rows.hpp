@@ -18,10 +18,15 @@ struct ContactRow {
   std::uint32_t source;  ///< identifies body, sample and face; the same in the next frame
 };
 
-/// Rows up to a capacity that is fixed when the list is made. Rows beyond it are counted and left out.
+/// Rows up to a capacity. Rows beyond it are counted and left out.
 class RowList {
  public:
   explicit RowList(std::size_t capacity) { rows_.reserve(capacity); }
+  /// Room for twice as many as there were, if that is more. It allocates: between steps.
+  void make_room() {
+    const std::size_t wanted = 2 * (rows_.size() + left_out_);
+    if (wanted > rows_.capacity()) rows_.reserve(wanted);
+  }
   void clear() {
     rows_.clear();
     left_out_ = 0;

@@ -1,6 +1,7 @@
 #include "engine/exact/convex_step.hpp"
 
 #include <Eigen/Cholesky>
+#include <limits>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -8,18 +9,17 @@
 namespace verisim::exact {
 namespace {
 
-/// Newton's method ends after a few iterations. This bounds the time of a step with absurd numbers.
+/// Newton's method ends after a few iterations, a few dozen for a heap. This, and one per body of a heap, bounds the
+/// time of a step with absurd numbers.
 constexpr int kIterationsMax = 60;
 /// Relative to the cost: a smaller Newton decrement is lost in rounding.
 constexpr double kRoundingOfCost = 1e-15;
-/// Largest matrix of unknowns, on the stack.
-constexpr int kUnknownsMax = 6 * ConvexStep::kBodiesMax;
+/// Largest dense matrix of unknowns, on the stack.
+constexpr int kUnknownsMax = 6 * ConvexStep::kDenseMax;
+/// Blocks below the diagonal of the sparse factor that there is room for at first, per body: a heap of boxes needs 6.
+constexpr std::size_t kBlocksPerBody = 16;
 using MatrixN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kUnknownsMax, kUnknownsMax>;
 using VectorN = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kUnknownsMax, 1>;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Solves A x = b for a symmetric positive definite A whose lower triangle is given, in place of b. Written out: for
 /// six unknowns a general routine takes twice as long.
@@ -47,30 +47,41 @@ void solve_in_place(double A[6][6], double b[6]) {
 
 }  // namespace
 
-ConvexStep::ConvexStep(std::size_t rows_max) {
+ConvexStep::ConvexStep(std::size_t rows_max, std::size_t bodies_max) {
+  reserve(rows_max, bodies_max);
+}
+
+void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
   rows_.reserve(rows_max);
-  bodies_.reserve(kBodiesMax);
+  runs_.reserve(rows_max);
+  bodies_.reserve(bodies_max);
+  if (bodies_max <= kDenseMax) return;
+  factor_.reserve(bodies_max, kBlocksPerBody * bodies_max);
+  unknowns_.reserve(6 * bodies_max);
 }
 
 void ConvexStep::clear() {
   rows_.clear();
+  runs_.clear();
   bodies_.clear();
   left_out_ = 0;
 }
 
-int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess) {
-  VERISIM_ASSERT(bodies_.size() < kBodiesMax);
+int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before) {
+  VERISIM_ASSERT(bodies_.size() < bodies_.capacity());
   VERISIM_ASSERT(is_symmetric(M));
   VERISIM_ASSERT(!(M.diagonal().array() <= 0).any());
-  bodies_.push_back({p_WC, M, u0, guess, Vector6d::Zero()});
+  bodies_.push_back({p_WC, M, u0, before, before, Vector6d::Zero()});
   return static_cast<int>(bodies_.size()) - 1;
 }
 
-void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second) {
+void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair) {
+  VERISIM_ASSERT(is_fraction(pair.restitution));
+  VERISIM_ASSERT(pair.overlap >= 0);
   VERISIM_ASSERT(first != second);
   VERISIM_ASSERT(std::min(first, second) >= kFixed);
   VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));
-  const auto rate = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
+  const auto set = [&](const ContactRow& row, int body, double sign, Vector6d& J) {
     const Vector3d n = sign * row.normal;
     const Vector3d arm = row.point - bodies_[at(body)].p_WC;
     J[0] = n.x();
@@ -80,6 +91,7 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     J[4] = arm.z() * n.x() - arm.x() * n.z();
     J[5] = arm.x() * n.y() - arm.y() * n.x();
   };
+  const std::size_t begin = rows_.size();
   for (const ContactRow& from : rows) {
     if (rows_.size() == rows_.capacity()) {
       ++left_out_;
@@ -89,20 +101,17 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     row.g = from.gap;
     row.k = from.stiffness;
     row.body = {second, first};
-    if (second != kFixed) rate(from, second, 1, row.J[0]);
-    if (first != kFixed) rate(from, first, -1, row.J[1]);
+    if (second != kFixed) set(from, second, 1, row.J[0]);
+    if (first != kFixed) set(from, first, -1, row.J[1]);
     if (second != kFixed) continue;
     std::swap(row.body[0], row.body[1]);
     std::swap(row.J[0], row.J[1]);
   }
+  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size(), pair});
 }
 
 void ConvexStep::evaluate_gaps(double dt) {
-  for (Row& row : rows_) {
-    double rate = row.J[0].dot(bodies_[at(row.body[0])].u);
-    if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].u);
-    row.z = row.g + dt * rate;
-  }
+  for (Row& row : rows_) row.z = row.g + dt * rate(row, &Body::u);
 }
 
 double ConvexStep::cost() const {
@@ -115,15 +124,15 @@ double ConvexStep::cost() const {
   return 0.5 * sum;
 }
 
-/// Starts from the guess or from the motion without contact, whichever costs less.
+/// Starts from the velocity before or from the motion without contact, whichever costs less.
 void ConvexStep::choose_start(double dt) {
   evaluate_gaps(dt);
-  const double cost_of_guess = cost();
-  for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 the guess
+  const double cost_of_before = cost();
+  for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 that before
   evaluate_gaps(dt);
   double cost_of_free = 0;
   for (const Row& row : rows_) cost_of_free += 0.5 * row.k * std::min(0.0, row.z) * std::min(0.0, row.z);
-  const bool starts_free = cost_of_free <= cost_of_guess;
+  const bool starts_free = cost_of_free <= cost_of_before;
   for (Body& body : bodies_) {
     std::swap(body.u, body.u0);
     if (starts_free) body.u = body.u0;
@@ -158,7 +167,7 @@ bool ConvexStep::find_direction_of_one(double dt) {
   return !body.direction.isZero(0);
 }
 
-bool ConvexStep::find_direction_of_all(double dt) {
+bool ConvexStep::find_direction_dense(double dt) {
   const int n = 6 * static_cast<int>(bodies_.size());
   MatrixN A = MatrixN::Zero(n, n);
   VectorN b(n);
@@ -184,6 +193,102 @@ bool ConvexStep::find_direction_of_all(double dt) {
   return !x.isZero(0);
 }
 
+/// The pattern of the sparse system grows with the pairs of bodies of which rows act. True if it has grown.
+bool ConvexStep::join_acting_runs() {
+  bool grown = false;
+  for (Run& run : runs_) {
+    if (run.joined || run.body[1] == kFixed) continue;
+    for (std::size_t r = run.begin; r < run.end && !run.joined; ++r) run.joined = rows_[r].z < 0;
+    grown = grown || run.joined;
+  }
+  return grown;
+}
+
+void ConvexStep::analyze() {
+  factor_.begin(bodies_.size());
+  for (const Run& run : runs_)
+    if (run.joined) factor_.join(at(run.body[0]), at(run.body[1]));
+  coupled_ = factor_.analyze();
+  blocks_needed_ = std::max(blocks_needed_, factor_.blocks_needed());
+  unknowns_.resize(6 * bodies_.size());
+  if (coupled_) return;
+  factor_.begin(bodies_.size());
+  const bool fits = factor_.analyze();  // no blocks at all
+  VERISIM_ASSERT(fits);
+}
+
+bool ConvexStep::find_direction_sparse(double dt) {
+  if (join_acting_runs() || unknowns_.empty()) analyze();
+  factor_.clear();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    std::copy_n(body.M.data(), 36, factor_.diagonal(i).begin());
+    const Vector6d force = body.M * (body.u0 - body.u);
+    std::copy_n(force.data(), 6, &unknowns_[6 * i]);
+  }
+  for (const Run& run : runs_) add_run(run, dt);
+  factor_.factor();
+  factor_.solve(unknowns_);
+  bool any = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].direction = Eigen::Map<const Vector6d>(&unknowns_[6 * i]);
+    any = any || !bodies_[i].direction.isZero(0);
+  }
+  return any;
+}
+
+/// Adds the rows of two bodies to the sparse system. Their Jacobians differ by the bodies' centres alone: that of the
+/// second is -T times that of the first, T = (1 0; [d]x 1), where d leads from the second's centre to the first's. So
+/// only one matrix is summed.
+void ConvexStep::add_run(const Run& run, double dt) {
+  double H[6][6] = {};  // lower triangle
+  double b[6] = {};
+  bool acts = false;
+  for (std::size_t r = run.begin; r < run.end; ++r) {
+    const Row& row = rows_[r];
+    if (row.z >= 0) continue;
+    acts = true;
+    const double* J = row.J[0].data();
+    const double force = dt * row.k * row.z;
+    const double stiff = dt * dt * row.k;
+    for (int i = 0; i < 6; ++i) {
+      b[i] += force * J[i];
+      const double scaled = stiff * J[i];
+      for (int j = 0; j <= i; ++j) H[i][j] += scaled * J[j];
+    }
+  }
+  if (!acts) return;
+  const std::size_t first = at(run.body[0]);
+  Matrix6d of_first;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j <= i; ++j) of_first(i, j) = of_first(j, i) = H[i][j];
+  const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) {
+    for (std::size_t i = 0; i < 36; ++i) to[i] += from.data()[i];
+  };
+  add(factor_.diagonal(first), of_first);
+  for (std::size_t i = 0; i < 6; ++i) unknowns_[6 * first + i] -= b[i];
+  if (run.body[1] == kFixed) return;
+
+  const std::size_t second = at(run.body[1]);
+  const Vector3d d = bodies_[first].p_WC - bodies_[second].p_WC;
+  Matrix6d across = of_first;  // T H
+  for (int j = 0; j < 6; ++j)
+    across.block<3, 1>(3, j) += d.cross(Vector3d(of_first(0, j), of_first(1, j), of_first(2, j)));
+  Matrix6d of_second = across;  // T H T^T
+  for (int i = 0; i < 6; ++i)
+    of_second.block<1, 3>(i, 3) += d.cross(Vector3d(across(i, 0), across(i, 1), across(i, 2))).transpose();
+  add(factor_.diagonal(second), of_second);
+  const Vector3d push(b[0], b[1], b[2]);
+  const Vector3d turn = Vector3d(b[3], b[4], b[5]) + d.cross(push);
+  for (std::size_t i = 0; i < 3; ++i) {
+    unknowns_[6 * second + i] += push[static_cast<int>(i)];
+    unknowns_[6 * second + 3 + i] += turn[static_cast<int>(i)];
+  }
+  if (!coupled_) return;
+  add(factor_.off_diagonal(first, second),
+      factor_.is_later(second, first) ? Matrix6d(-across) : Matrix6d(-across.transpose()));
+}
+
 /// The derivatives of all gaps and of the first term of the cost along the search direction.
 void ConvexStep::prepare_line_search(double dt) {
   inertia_cost_ = inertia_slope_ = inertia_curvature_ = 0;
@@ -194,11 +299,7 @@ void ConvexStep::prepare_line_search(double dt) {
     inertia_slope_ += off.dot(push);
     inertia_curvature_ += body.direction.dot(push);
   }
-  for (Row& row : rows_) {
-    double rate = row.J[0].dot(bodies_[at(row.body[0])].direction);
-    if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].direction);
-    row.dz = dt * rate;
-  }
+  for (Row& row : rows_) row.dz = dt * rate(row, &Body::direction);
 }
 
 ConvexStep::LineValue ConvexStep::value_along(double t) const {
@@ -253,13 +354,13 @@ bool ConvexStep::advance(double t) {
   return same;
 }
 
-int ConvexStep::solve(double dt) {
-  VERISIM_ASSERT(is_positive(dt));
-  finished_ = true;
-  if (bodies_.empty()) return 0;
-  choose_start(dt);
-  for (int i = 0; i < kIterationsMax; ++i) {
-    const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt) : find_direction_of_all(dt);
+int ConvexStep::minimize(double dt) {
+  const bool is_sparse = bodies_.size() > kDenseMax;
+  const int most = kIterationsMax + (is_sparse ? static_cast<int>(bodies_.size()) : 0);
+  for (int i = 0; i < most; ++i) {
+    const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt)
+                       : is_sparse         ? find_direction_sparse(dt)
+                                           : find_direction_dense(dt);
     if (!moves) return i;
     prepare_line_search(dt);
     if (has_converged()) return i;
@@ -269,22 +370,61 @@ int ConvexStep::solve(double dt) {
     if (same && t == 1) return i + 1;
   }
   finished_ = false;
-  return kIterationsMax;
+  return most;
+}
+
+int ConvexStep::solve(double dt, double threshold) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(is_positive(threshold));
+  finished_ = true;
+  hit_ = late_ = false;
+  blocks_needed_ = 0;
+  unknowns_.clear();
+  if (bodies_.empty()) return 0;
+  note_hits(dt, threshold);
+  choose_start(dt);
+  int iterations = minimize(dt);
+  for (Body& body : bodies_) body.during = body.u;
+  for (Row& row : rows_) {
+    row.force = -row.k * std::min(0.0, row.z);
+    row.end_gap = row.z;
+  }
+  if (hit_ && begin_rebound(dt)) {
+    iterations += minimize(dt);
+    end_rebound();
+  }
+  sum_up();
+  return iterations;
+}
+
+double ConvexStep::rate(const Row& row, Vector6d Body::*velocity) const {
+  double rate = row.J[0].dot(bodies_[at(row.body[0])].*velocity);
+  if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].*velocity);
+  return rate;
+}
+
+void ConvexStep::sum_up() {
+  for (const Row& row : rows_) {
+    if (row.force == 0) continue;
+    for (std::size_t side = 0; side < 2; ++side)
+      if (row.body[side] != kFixed) bodies_[at(row.body[side])].push += row.force * row.J[side];
+  }
 }
 
 const Vector6d& ConvexStep::velocity(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
+  return bodies_[at(body)].during;
+}
+
+const Vector6d& ConvexStep::velocity_after(int body) const {
   VERISIM_ASSERT(at(body) < bodies_.size());
   return bodies_[at(body)].u;
 }
 
 Wrench ConvexStep::wrench(int body) const {
   VERISIM_ASSERT(at(body) < bodies_.size());
-  Vector6d sum = Vector6d::Zero();
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    for (std::size_t side = 0; side < 2; ++side)
-      if (rows_[i].body[side] == body) sum += force(i) * rows_[i].J[side];
-  }
-  return {sum.head<3>(), sum.tail<3>()};
+  const Vector6d& push = bodies_[at(body)].push;
+  return {push.head<3>(), push.tail<3>()};
 }
 
 }  // namespace verisim::exact

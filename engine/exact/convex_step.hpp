@@ -7,19 +7,40 @@
 //
 // This is the penalty method with forces at the end of the step instead of its beginning; it is stable for any
 // stiffness. The cost is strictly convex, so semi-smooth Newton with a line search converges to its one minimum. Each
-// iteration is one Cholesky solve with 6 unknowns per body. The same formulation with friction: Castro et al., "An
-// unconstrained convex formulation of compliant contact" (SAP), 2022.
+// iteration is one Cholesky solve with 6 unknowns per body: dense for a few bodies, sparse for more
+// (block_cholesky.hpp). The same formulation with friction: Castro et al., "An unconstrained convex formulation of
+// compliant contact" (SAP), 2022.
 //
-// World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor.
-// Sums are taken in the order in which rows were added.
+// Impacts. The velocity u above is zero across a contact that closes: an inelastic blow. Where rows are hit the bodies
+// move with u, but the step ends with the velocity w that minimises the same cost over the rows that push, where those
+// that were hit ask for J w >= e v instead: Newton's law of impact, as in Moreau and Jean's time stepping (Acary and
+// Brogliato, "Numerical Methods for Nonsmooth Dynamical Systems", 2008, chapter 10). v is the speed of approach at the
+// start of the step, e the restitution.
+//   - A row with e > 0 is hit if v is above the threshold speed and it does not overlap by more than a quarter of v dt.
+//     A body that lies has no speed of approach; one that slides along a curved path has, but overlaps by half of v dt.
+//   - A row that was open and closes only because of a blow is left out: the next step finds it hit. So a blow is
+//   handed on
+//     from body to body, one per step.
+//   - While it is hit a row is as stiff as rigid bodies: a blow is over within the step, whatever the stiffness.
+//   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
+//     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
+//     what is between them.
+// Late rows, of more than kDenseMax bodies or with restitution. A row that overlaps by more than the pair did before
+// and the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give:
+// it moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
+//
+// World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
+// in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "engine/base/pose.hpp"
+#include "engine/exact/block_cholesky.hpp"
 #include "engine/exact/contact_rows.hpp"
 
 namespace verisim::exact {
@@ -29,46 +50,77 @@ inline constexpr int kFixed = -1;
 
 class ConvexStep {
  public:
-  static constexpr int kBodiesMax = 8;  ///< bodies of one problem
+  static constexpr int kDenseMax = 8;  ///< up to so many bodies the Newton system is one dense matrix
 
-  explicit ConvexStep(std::size_t rows_max);
+  /// Room as reserve(rows_max, bodies_max).
+  explicit ConvexStep(std::size_t rows_max, std::size_t bodies_max = kDenseMax);
+
+  /// Room for so many rows and bodies of one problem; more than now, never less. It allocates: between steps.
+  void reserve(std::size_t rows_max, std::size_t bodies_max);
+  /// Room for so many blocks of a sparse factor below its diagonal. It allocates: between steps.
+  void reserve_blocks(std::size_t blocks) { factor_.reserve(0, blocks); }
 
   /// Removes all bodies and rows. Nothing is kept: the answer depends on this step alone.
   void clear();
 
   /// @param M   about the centre of mass
   /// @param u0  velocity that the body would have without contact
-  /// @param guess  velocity to start from: any finite one; that of the last step saves iterations
-  /// @pre fewer than kBodiesMax bodies so far; M is symmetric positive definite  @returns the body's number
-  int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& guess);
+  /// @param before  velocity at the start of the step: speeds of approach are those that it gives, and the search for
+  ///        the minimum may begin there
+  /// @pre fewer than bodies_max bodies so far; M is symmetric positive definite  @returns the body's number
+  int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before);
 
   /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
+  /// What is known of two bodies beside their rows.
+  struct Pair {
+    double restitution = 0;                                    ///< e, in [0, 1]; 0: none of the rows is ever hit
+    double overlap = std::numeric_limits<double>::infinity();  ///< m, before: deeper rows may be late
+  };
   /// @pre both are numbers from add_body or kFixed, and not the same
-  void add_rows(std::span<const ContactRow> rows, int first, int second);
+  void add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair);
+  void add_rows(std::span<const ContactRow> rows, int first, int second) { add_rows(rows, first, second, {}); }
+  static constexpr double kPushOut = 0.5;  ///< m/s
 
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
-  /// 20 rows that act. @pre dt is finite and above 0
-  int solve(double dt);
+  /// 20 rows that act. @param threshold  m/s, > 0: a slower approach is no impact
+  /// @pre dt is finite and above 0; it is called once after clear()
+  int solve(double dt, double threshold = kThreshold);
+  static constexpr double kThreshold = 0.01;  ///< m/s
 
   /// @pre body is a number from add_body, here and below
+  /// The velocity with which the body moves during the step.
   [[nodiscard]] const Vector6d& velocity(int body) const;
+  /// The velocity that it has at the end: the same but where a row was hit.
+  [[nodiscard]] const Vector6d& velocity_after(int body) const;
+  [[nodiscard]] bool was_hit() const { return hit_; }  ///< any row, or late and pushing, in the last solve
   /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
   [[nodiscard]] Wrench wrench(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
-  [[nodiscard]] double force(std::size_t row) const { return -rows_[row].k * std::min(0.0, rows_[row].z); }
+  [[nodiscard]] double force(std::size_t row) const { return rows_[row].force; }
+  /// Was it late? Then its overlap is none that a later row may have.
+  [[nodiscard]] bool is_late(std::size_t row) const { return rows_[row].late; }
   /// Its linearised gap at the end of the step [m].
-  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].z; }
+  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].end_gap; }
   [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
+  [[nodiscard]] std::size_t rows_max() const { return rows_.capacity(); }
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
   [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
   /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.
   [[nodiscard]] bool finished() const { return finished_; }
+  /// Blocks of the sparse factor of the last solve; 0: it was dense. Above blocks_max() there was no room for them: the
+  /// search for the minimum then took each body by itself, which takes many more iterations.
+  [[nodiscard]] std::size_t blocks_needed() const { return blocks_needed_; }
+  [[nodiscard]] std::size_t blocks_max() const { return factor_.blocks_max(); }
 
  private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  static constexpr double kNothing = -1;
   struct Body {
     Vector3d p_WC;
     Matrix6d M;
-    Vector6d u0, u, direction;
+    Vector6d u0, before, u, direction;
+    Vector6d during = Vector6d::Zero();  ///< velocity()
+    Vector6d push = Vector6d::Zero();    ///< wrench()
   };
   struct Row {
     std::array<Vector6d, 2> J;  ///< Jacobian: rate of the gap by the bodies' velocities
@@ -76,17 +128,38 @@ class ConvexStep {
     double g, k;
     double z = 0;   ///< gap at the end of the step
     double dz = 0;  ///< its change along the search direction
+    double force = 0, end_gap = 0;
+    double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
+    bool late = false;
+  };
+  /// Rows between the same two bodies, one after the other.
+  struct Run {
+    std::array<int, 2> body;  ///< as of its rows
+    std::size_t begin, end;
+    Pair pair;
+    bool joined = false;  ///< in the pattern of the sparse system
   };
   /// The cost along the search direction and its first two derivatives, at step length t.
   struct LineValue {
     double cost, slope, curvature;
   };
 
+  int minimize(double dt);
+  void note_hits(double dt, double threshold);
+  void note_hits(const Run& run, double dt, double threshold);
+  [[nodiscard]] bool begin_rebound(double dt);
+  void end_rebound();
+  void sum_up();
+  [[nodiscard]] double rate(const Row& row, Vector6d Body::*velocity) const;
   void choose_start(double dt);
   void evaluate_gaps(double dt);
   [[nodiscard]] double cost() const;
   bool find_direction_of_one(double dt);
-  bool find_direction_of_all(double dt);
+  bool find_direction_dense(double dt);
+  bool find_direction_sparse(double dt);
+  [[nodiscard]] bool join_acting_runs();
+  void analyze();
+  void add_run(const Run& run, double dt);
   void prepare_line_search(double dt);
   [[nodiscard]] LineValue value_along(double t) const;
   [[nodiscard]] bool has_converged() const;
@@ -94,9 +167,14 @@ class ConvexStep {
   bool advance(double t);
 
   std::vector<Row> rows_;
+  std::vector<Run> runs_;
   std::vector<Body> bodies_;
+  BlockCholesky factor_;
+  std::vector<double> unknowns_;  ///< of the sparse system, 6 per body
+  bool coupled_ = false;          ///< is there room for the blocks of pairs?
+  std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
-  bool finished_ = true;
+  bool finished_ = true, hit_ = false, late_ = false;
   double inertia_cost_ = 0, inertia_slope_ = 0, inertia_curvature_ = 0;  ///< of the first term along the direction
 };
 

@@ -93,6 +93,7 @@ class ExactLink {
   void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
 
   [[nodiscard]] const RowList& rows() const { return rows_; }
+  void make_room() { rows_.make_room(); }  ///< for more rows than the last find; between steps
   [[nodiscard]] const SearchCost& cost() const { return cost_; }  ///< of the last find
   [[nodiscard]] double depth_max() const { return depth_max_; }   ///< m, deepest overlap at the start of the step
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/contract.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 
@@ -81,6 +82,12 @@ int define_simulation_parameters(lua_State* L) {
     if (*ratio < 0) raise(L, "contactDampingRatio is {:g} but must not be negative", *ratio);
     p.contact_damping_ratio = *ratio;
   }
+  p.exact_stiffness = fields.positive("exactStiffness").value_or(p.exact_stiffness);
+  if (const auto restitution = fields.number("restitution")) {
+    if (!is_fraction(*restitution)) raise(L, "restitution is {:g} but must be from 0 to 1", *restitution);
+    p.restitution = *restitution;
+  }
+  p.restitution_speed = fields.positive("restitutionSpeed").value_or(p.restitution_speed);
   p.passive_contacts = fields.boolean("passiveContacts").value_or(p.passive_contacts);
   state.scene.grasp_distance = fields.positive("graspDistance").value_or(state.scene.grasp_distance);
   accept_without_effect(L, fields, {"limitCouplerDampingForce", "precision", "parts"});

@@ -66,13 +66,6 @@ class Reach {
 
 }  // namespace
 
-bool will_be_exact(const BodyDescription& body, Hybrid method) {
-  if (!method->needs_precise_surfaces() || !body.use_brep) return false;
-  const auto is_known = [](const Face& face) { return !std::holds_alternative<OtherSurface>(face.surface); };
-  return std::any_of(body.parts.begin(), body.parts.end(),
-                     [&](const Part& part) { return std::any_of(part.faces.begin(), part.faces.end(), is_known); });
-}
-
 void BodyMaker::begin(World& world) {
   const Reach reach(world);
   for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -102,6 +95,7 @@ void BodyMaker::make(World& world, std::size_t i) {
     if (body.method->needs_precise_surfaces() && description.use_brep) {
       exact::BodyOptions options;
       options.spacing = description.voxel_size;
+      options.line_stiffness = world.parameters.exact_stiffness;
       auto precise = std::make_shared<exact::ExactBody>(description.parts, options);
       if (precise->has_precise_faces()) body.exact = std::move(precise);
     }

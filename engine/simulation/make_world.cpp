@@ -6,7 +6,6 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
-#include "engine/exact/convex_step.hpp"
 #include "engine/geometry/merged.hpp"
 #include "engine/simulation/body_maker.hpp"
 #include "engine/simulation/hybrid_method.hpp"
@@ -47,6 +46,9 @@ void check(const SimulationParameters& p) {
   positive(p.contact_stiffness, "contactStiffness", "N/m");
   if (!std::isfinite(p.contact_damping_ratio) || p.contact_damping_ratio < 0)
     fail(ErrorKind::input, "contactDampingRatio is {} but must be finite and not negative", p.contact_damping_ratio);
+  positive(p.exact_stiffness, "exactStiffness", "N/m^2");
+  if (!is_fraction(p.restitution)) fail(ErrorKind::input, "restitution is {} but must be from 0 to 1", p.restitution);
+  positive(p.restitution_speed, "restitutionSpeed", "m/s");
   if (!p.gravity.allFinite()) fail(ErrorKind::input, "gravity is not finite");
   if (p.duration) positive(*p.duration, "duration", "s");
 }
@@ -125,18 +127,6 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   return body;
 }
 
-/// The convex step has room for so many.
-void check_exact_count(const Scene& scene, const World& world) {
-  std::ptrdiff_t solved = 0;
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-    const Body& body = world.bodies[i];
-    if (!body.can_move || !will_be_exact(scene.bodies[i], body.method)) continue;
-    if (++solved > exact::ConvexStep::kBodiesMax)
-      fail(ErrorKind::input, "'{}': more than {} moving bodies are 'exact'; give the others hybrid = \"restore\"",
-           body.name, exact::ConvexStep::kBodiesMax);
-  }
-}
-
 }  // namespace
 
 World make_world(const Scene& scene, std::vector<Event>& events) {
@@ -161,7 +151,6 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
   check_names(scene);
   for (const auto& device : scene.devices) world.hands.emplace_back().device = device;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));
-  check_exact_count(scene, world);
   return world;
 }
 

@@ -45,6 +45,7 @@ void Simulation::prepare() {
   self.tell();
   if (self.poses_set) self.look_around();
   self.poses_set = false;
+  self.stages.exact.make_room();
   while (neighbours.missed_some() || !neighbours.strangers().empty()) {
     for (const auto& [first, second] : neighbours.strangers()) self.meet(first, second);
     if (neighbours.missed_some()) neighbours.make_room(self.world);

@@ -94,8 +94,8 @@ TEST(ConvexStepDeathTest, IsOfBodiesWithInertiaAndRowsBetweenThem) {
   EXPECT_BROKEN(step.solve(0), "is_positive(dt)");
   EXPECT_BROKEN(step.velocity(body + 1), "at(body) < bodies_.size()");
   EXPECT_BROKEN(step.wrench(-1), "at(body) < bodies_.size()");
-  for (int i = 1; i < ConvexStep::kBodiesMax; ++i) (void)step.add_body(o, M, u, u);
-  EXPECT_BROKEN(step.add_body(o, M, u, u), "bodies_.size() < kBodiesMax");
+  for (int i = 1; i < ConvexStep::kDenseMax; ++i) (void)step.add_body(o, M, u, u);
+  EXPECT_BROKEN(step.add_body(o, M, u, u), "bodies_.size() < bodies_.capacity()");
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   WrittenScenario written(R"(defineSimulationParameters{
     timestep = 0.002, gravity = {0, 0, -9.81}, seed = 7, duration = 3, frameRate = 30, integrator = "implicit",
     hybrid = "off", contact = "fcl", alignment = "pavlik", reduction = "exactly-one", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
-    limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, passiveContacts = false, graspDistance = 0.2 })");
+    limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, exactStiffness = 1e9, restitution = 0.4,
+    restitutionSpeed = 0.02, passiveContacts = false, graspDistance = 0.2 })");
   const Scene& scene = written.build();
   const SimulationParameters& p = scene.parameters;
   EXPECT_EQ(p.timestep, 0.002);
@@ -30,6 +31,9 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   EXPECT_TRUE(p.all_bodies_are_dynamic);
   EXPECT_EQ(p.contact_stiffness, 5000);
   EXPECT_EQ(p.contact_damping_ratio, 0.7);
+  EXPECT_EQ(p.exact_stiffness, 1e9);
+  EXPECT_EQ(p.restitution, 0.4);
+  EXPECT_EQ(p.restitution_speed, 0.02);
   EXPECT_FALSE(p.passive_contacts);
   EXPECT_EQ(scene.grasp_distance, 0.2);
 }
@@ -63,6 +67,13 @@ TEST(DefineSimulationParameters, RefusesWhatIsWrongWithPlaceAndRemedy) {
             std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{alignment = 'bytype'}").find("did you mean 'by-type'?"),
             std::string::npos);
+  EXPECT_NE(
+      refusal_of("defineSimulationParameters{restitution = 1.5}").find("restitution is 1.5 but must be from 0 to 1"),
+      std::string::npos);
+  EXPECT_NE(refusal_of("defineSimulationParameters{restitution = 0/0}"), "");
+  EXPECT_NE(
+      refusal_of("defineSimulationParameters{exactStiffness = 0}").find("exactStiffness is 0 but must be above 0"),
+      std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{reduction = 'one'}").find("; known: common-freedom, exactly-one"),
             std::string::npos);
   EXPECT_EQ(

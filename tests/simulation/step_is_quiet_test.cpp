@@ -10,6 +10,7 @@
 
 #include "engine/wii/head.hpp"
 #include "tests/simulation/hybrid_scenes.hpp"
+#include "tests/simulation/tray_scene.hpp"
 
 namespace {
 
@@ -127,6 +128,18 @@ TEST(StepIsQuiet, WhileBoxesFallOnEachOther) {
     EXPECT_EQ(quiet.allocations, 0U);
     EXPECT_EQ(quiet.locks, 0U);
   }
+}
+
+// More bodies in an island than one dense matrix takes, and blows.
+TEST(StepIsQuiet, WhileManyBoxesFallIntoATray) {
+  Scene scene = tray::scene_of(16, 0.12, 1, 0.01);
+  scene.parameters.duration = 0.3;
+  scene.parameters.restitution = 0.3;
+  Simulation simulation(std::move(scene), {});
+  const Quiet quiet = run_counted(simulation);
+  ASSERT_GT(quiet.contacts, 0U);
+  EXPECT_EQ(quiet.allocations, 0U);
+  EXPECT_EQ(quiet.locks, 0U);
 }
 
 TEST(StepIsQuiet, WhileItHasSomethingToSay) {

@@ -1,6 +1,7 @@
 #include "engine/simulation/stages/exact_response.hpp"
 
 #include <Eigen/Cholesky>
+#include <utility>
 
 #include "engine/base/error.hpp"
 #include "engine/simulation/stages/groups.hpp"
@@ -11,19 +12,45 @@ namespace {
 /// Precise contacts are looked for this far ahead of what the bodies can close within the step [m]. A contact counts
 /// only when it closes, so more costs time and changes nothing.
 constexpr double kMargin = 1e-4;
-constexpr std::size_t kRowsMax = 16384;  // of one island
+/// Rows and blocks that an island has room for at first, and by how much more than the last frame needed there is room
+/// in the next: so much more has to come at once to be left out.
+constexpr std::size_t kRowsMax = 16384;
+constexpr std::size_t kRoom = 2;
 
 /// Bound of the velocity of any point of a body [m/s].
 double speed_of(const Body& body, const Vector6d& u) {
   return u.head<3>().norm() + u.tail<3>().norm() * body.bounds_B.size().norm();
 }
 
+/// The box around what the search looks at, body coordinates.
+Bounds box_of(const exact::ExactBody& body) {
+  Bounds box;
+  for (const exact::BoxTree* tree : {&body.face_tree, &body.block_tree}) {
+    if (tree->nodes.empty()) continue;
+    box.include(tree->nodes[0].center - tree->nodes[0].half);
+    box.include(tree->nodes[0].center + tree->nodes[0].half);
+  }
+  return box;
+}
+
 }  // namespace
 
-void ExactResponse::add_link(const PairMethods& methods, std::size_t l) {
+void ExactResponse::add_link(const World& world, const PairMethods& methods, std::size_t l) {
   VERISIM_ASSERT(l == links_.size());
   links_.emplace_back();
-  if (!solver_ && methods.is_precise(l)) solver_ = std::make_unique<exact::ConvexStep>(kRowsMax);
+  if (!methods.is_precise(l)) return;
+  for (const std::size_t body : {world.links[l].first, world.links[l].second})
+    bodies_[body].box_B = box_of(*world.bodies[body].exact);
+  if (solver_) return;
+  solver_ = std::make_unique<exact::ConvexStep>(kRowsMax, bodies_.size());
+}
+
+void ExactResponse::make_room() {
+  if (!solver_) return;
+  for (OfLink& of : links_)
+    if (of.search != nullptr) of.search->make_room();
+  if (kRoom * rows_needed_ > solver_->rows_max()) solver_->reserve(2 * kRoom * rows_needed_, bodies_.size());
+  if (kRoom * blocks_needed_ > solver_->blocks_max()) solver_->reserve_blocks(2 * kRoom * blocks_needed_);
 }
 
 void ExactResponse::solve(const World& world, const Neighbours& neighbours, const PairMethods& methods,
@@ -35,26 +62,72 @@ void ExactResponse::solve(const World& world, const Neighbours& neighbours, cons
     return links_[l].search != nullptr && !links_[l].search->rows().rows().empty() &&
            bodies_[world.links[l].first].solved && bodies_[world.links[l].second].solved;
   });
+  list_islands(world);
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     if (bodies_[i].solved && island_[i] == i) solve_island(world, i, cost);
+}
+
+/// Bodies and links of each island, in their order: chains that begin at the island's first body.
+void ExactResponse::list_islands(const World& world) {
+  for (OfBody& of : bodies_) {
+    of.in_solver = exact::kFixed;
+    of.first_body = of.first_link = kNone;
+  }
+  for (std::size_t i = bodies_.size(); i-- > 0;) {
+    if (!bodies_[i].solved) continue;
+    OfBody& island = bodies_[island_[i]];
+    bodies_[i].next = std::exchange(island.first_body, i);
+  }
+  for (std::size_t n = world.near_links.size(); n-- > 0;) {
+    const std::size_t l = world.near_links[n];
+    if (links_[l].search == nullptr || links_[l].search->rows().rows().empty()) continue;
+    const Link& link = world.links[l];
+    OfBody& island = bodies_[island_[bodies_[link.first].solved ? link.first : link.second]];
+    links_[l].next = std::exchange(island.first_link, l);
+  }
 }
 
 void ExactResponse::begin(const World& world, const Response& response) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     OfBody& of = bodies_[i];
-    of.solved = false;
+    of.solved = of.placed = false;
+    of.speed = 0;
     of.wrench = {};
     of.contacts = 0;
     if (!world.bodies[i].exact || !world.moves(world.bodies[i])) continue;
     of.step = begin_implicit(world.bodies[i].rigid, response.loads(i), world.dt);
     of.velocity = of.step.free;
+    of.speed = speed_of(world.bodies[i], of.velocity);
+  }
+}
+
+/// What a body may meet in this step because another one hits it first: it goes no faster then than that one, and its
+/// own rebound, let it. One body farther; the next in a row is the next step's.
+void ExactResponse::expect_blows(const World& world, const PairMethods& methods) {
+  for (OfBody& of : bodies_) of.speed_hit = of.speed;
+  for (const std::size_t l : world.near_links) {
+    if (methods.acting(l) == nullptr || methods.acting(l)->precise() == nullptr) continue;
+    const Link& link = world.links[l];
+    OfBody& first = bodies_[link.first];
+    OfBody& second = bodies_[link.second];
+    if (!world.moves(world.bodies[link.first]) || !world.moves(world.bodies[link.second])) continue;
+    if (are_apart(placed(world, link.first), placed(world, link.second),
+                  kMargin + world.dt * (first.speed + second.speed)))
+      continue;
+    const double e = world.parameters.restitution;
+    first.speed_hit = std::max(first.speed_hit, (1 + e) * second.speed + e * first.speed);
+    second.speed_hit = std::max(second.speed_hit, (1 + e) * first.speed + e * second.speed);
   }
 }
 
 void ExactResponse::find(const World& world, const Neighbours& neighbours, const PairMethods& methods,
                          FrameCost& cost) {
+  expect_blows(world, methods);
   for (const std::size_t l : world.near_links) {
-    links_[l] = {};
+    OfLink& of = links_[l];
+    const double overlap = of.found_in != kNone && of.found_in + 1 == world.frame ? of.overlap : 0;
+    of = {};
+    of.overlap = overlap;
     exact::ExactLink* search = methods.acting(l) != nullptr ? methods.acting(l)->precise() : nullptr;
     if (search == nullptr) continue;
     const Link& link = world.links[l];
@@ -65,17 +138,29 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
     if (!(gap(neighbours.box(link.first), neighbours.box(link.second)) <= reach)) continue;
     bodies_[link.first].solved = bodies_[link.first].solved || world.moves(first);
     bodies_[link.second].solved = bodies_[link.second].solved || world.moves(second);
+    of.searched = true;
+    if (are_apart(placed(world, link.first), placed(world, link.second), reach)) continue;
     find(world, l, *search, reach);
     cost.exact_samples += search->cost().samples;
     cost.rows_left_out += search->rows().left_out();
   }
 }
 
+/// Where the box around a body is in this frame.
+const exact::OrientedBox& ExactResponse::placed(const World& world, std::size_t body) {
+  OfBody& of = bodies_[body];
+  if (of.placed) return of.box;
+  const Pose X_WB = world.bodies[body].rigid.pose();
+  of.box = {X_WB * of.box_B.center(), 0.5 * of.box_B.size(), X_WB.rotation.toRotationMatrix()};
+  of.placed = true;
+  return of.box;
+}
+
 /// How far ahead contacts of two bodies are looked for [m].
 double ExactResponse::closing(const World& world, const Link& link) const {
   double sum = kMargin;
   for (const std::size_t i : {link.first, link.second})
-    if (world.moves(world.bodies[i])) sum += world.dt * speed_of(world.bodies[i], bodies_[i].velocity);
+    if (world.moves(world.bodies[i])) sum += world.dt * bodies_[i].speed_hit;
   return sum;
 }
 
@@ -91,54 +176,52 @@ void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& se
   };
   search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing);
   links_[l].search = &search;
+  links_[l].found_in = world.frame;
   links_[l].depth_max = search.depth_max();
 }
 
 void ExactResponse::solve_island(const World& world, std::size_t island, FrameCost& cost) {
+  const OfBody& head = bodies_[island];
   solver_->clear();
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::size_t i = head.first_body; i != kNone; i = bodies_[i].next) {
     OfBody& of = bodies_[i];
-    of.in_solver = exact::kFixed;
-    if (!of.solved || island_[i] != island) continue;
     const RigidBody& rigid = world.bodies[i].rigid;
     Vector6d last;
     last << rigid.v_C, rigid.omega;
     of.in_solver = solver_->add_body(rigid.p_WC, of.step.A, of.step.free, last);
   }
-  const auto in_solver = [&](std::size_t body) { return bodies_[body].in_solver; };
-  const auto belongs = [&](std::size_t l) {
-    const auto [first, second, number] = world.links[l];
-    return links_[l].search != nullptr && (in_solver(first) != exact::kFixed || in_solver(second) != exact::kFixed);
-  };
-  for (const std::size_t l : world.near_links)
-    if (belongs(l))
-      solver_->add_rows(links_[l].search->rows().rows(), in_solver(world.links[l].first),
-                        in_solver(world.links[l].second));
-  cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt));
+  const SimulationParameters& p = world.parameters;
+  for (std::size_t l = head.first_link; l != kNone; l = links_[l].next)
+    solver_->add_rows(links_[l].search->rows().rows(), bodies_[world.links[l].first].in_solver,
+                      bodies_[world.links[l].second].in_solver, {p.restitution, links_[l].overlap});
+  cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt, p.restitution_speed));
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
-  read_bodies(world.dt);
+  rows_needed_ = std::max(rows_needed_, solver_->row_count() + solver_->left_out());
+  blocks_needed_ = std::max(blocks_needed_, solver_->blocks_needed());
+  read_bodies(island, world.dt);
   std::size_t first_row = 0;
-  for (const std::size_t l : world.near_links) {
-    if (!belongs(l)) continue;
+  for (std::size_t l = head.first_link; l != kNone; l = links_[l].next) {
     read_rows(world, l, first_row, cost);
     first_row += links_[l].search->rows().rows().size();
   }
 }
 
-/// What the solver found for its bodies.
-void ExactResponse::read_bodies(double dt) {
+/// What the solver found for the island's bodies.
+void ExactResponse::read_bodies(std::size_t island, double dt) {
   const bool alone = solver_->body_count() == 1;
-  for (OfBody& of : bodies_) {
-    if (of.in_solver == exact::kFixed) continue;
+  for (std::size_t i = bodies_[island].first_body; i != kNone; i = bodies_[i].next) {
+    OfBody& of = bodies_[i];
     of.velocity = solver_->velocity(of.in_solver);
+    of.velocity_after = solver_->velocity_after(of.in_solver);
     of.wrench = solver_->wrench(of.in_solver);
     if (alone) continue;
     // A stiff row's force has the roundings of its gap times its stiffness, 1e-9 of it and more. The velocity that
     // exactly these forces give keeps the momentum of bodies that push each other.
     Vector6d impulse;
     impulse << dt * of.wrench.force, dt * of.wrench.torque;
-    of.velocity = of.step.free + of.step.A.llt().solve(impulse);
+    of.velocity_after = of.step.free + of.step.A.llt().solve(impulse);
+    if (!solver_->was_hit()) of.velocity = of.velocity_after;
   }
 }
 
@@ -148,8 +231,10 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   const Vector3d& p_WC = world.bodies[world.links[l].second].rigid.p_WC;
   VERISIM_ASSERT(first_row <= solver_->row_count() + solver_->left_out());
   const auto& rows = of.search->rows().rows();
+  of.overlap = 0;
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
+    if (!solver_->is_late(first_row + i)) of.overlap = std::max(of.overlap, -rows[i].gap);
     if (!(force > 0)) continue;
     ++of.acting;
     const Vector3d f = force * rows[i].normal;

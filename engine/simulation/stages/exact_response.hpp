@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/exact/convex_step.hpp"
+#include "engine/exact/oriented_box.hpp"
 #include "engine/simulation/stages/neighbours.hpp"
 #include "engine/simulation/stages/response.hpp"
 
@@ -14,7 +15,10 @@ namespace verisim {
 class ExactResponse {
  public:
   explicit ExactResponse(const World& world) : bodies_(world.bodies.size()), island_(world.bodies.size()) {}
-  void add_link(const PairMethods& methods, std::size_t link);  ///< between frames
+  // Between frames.
+  void add_link(const World& world, const PairMethods& methods, std::size_t link);
+  /// Room for more than the last frames needed, so that the next finds it too.
+  void make_room();
 
   void solve(const World& world, const Neighbours& neighbours, const PairMethods& methods, const Response& response,
              FrameCost& cost);
@@ -23,6 +27,8 @@ class ExactResponse {
   [[nodiscard]] bool solved(std::size_t body) const { return bodies_[body].solved; }
   [[nodiscard]] const ImplicitStep& step(std::size_t body) const { return bodies_[body].step; }
   [[nodiscard]] const Vector6d& velocity(std::size_t body) const { return bodies_[body].velocity; }
+  /// With which it ends the step: another one if it was hit and rebounds.
+  [[nodiscard]] const Vector6d& velocity_after(std::size_t body) const { return bodies_[body].velocity_after; }
   [[nodiscard]] const Wrench& wrench(std::size_t body) const { return bodies_[body].wrench; }
 
   /// What the precise contacts of a link do to its second body.
@@ -30,36 +36,51 @@ class ExactResponse {
   [[nodiscard]] std::uint32_t count(std::size_t link) const { return links_[link].acting; }  ///< rows that push
   [[nodiscard]] double depth_max(std::size_t link) const { return links_[link].depth_max; }  ///< m
   /// Were the pair's precise contacts looked for in this frame?
-  [[nodiscard]] bool searched(std::size_t link) const { return links_[link].search != nullptr; }
+  [[nodiscard]] bool searched(std::size_t link) const { return links_[link].searched; }
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return bodies_[body].contacts; }
 
  private:
   struct OfBody {
     bool solved = false;
     ImplicitStep step;
-    Vector6d velocity = Vector6d::Zero();
+    Vector6d velocity = Vector6d::Zero(), velocity_after = Vector6d::Zero();
+    double speed = 0;      ///< m/s, bound of that of any of its points without contact
+    double speed_hit = 0;  ///< m/s, likewise if another body hits it in this step
     Wrench wrench;
+    Bounds box_B;
+    exact::OrientedBox box;                              ///< box_B
+    bool placed = false;                                 ///< is it of this frame?
+    std::size_t first_body = kNone, first_link = kNone;  ///< of the island that begins with this body
+    std::size_t next = kNone;                            ///< body of its island
     int in_solver = exact::kFixed;
     std::uint64_t contacts = 0;
   };
   struct OfLink {
-    exact::ExactLink* search = nullptr;  ///< null: not in this frame
+    exact::ExactLink* search = nullptr;  ///< null: none in this frame, or certainly without rows
+    bool searched = false;
+    std::size_t next = kNone;  ///< link of its island
     Wrench on_second;
     std::uint32_t acting = 0;
     double depth_max = 0;
+    double overlap = 0;            ///< m, of rows that were not late when there last were any
+    std::size_t found_in = kNone;  ///< frame
   };
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
+  [[nodiscard]] const exact::OrientedBox& placed(const World& world, std::size_t body);
+  void expect_blows(const World& world, const PairMethods& methods);
+  void list_islands(const World& world);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
   void solve_island(const World& world, std::size_t island, FrameCost& cost);
-  void read_bodies(double dt);
+  void read_bodies(std::size_t island, double dt);
   void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
 
   std::unique_ptr<exact::ConvexStep> solver_;  ///< null: no pair has precise contacts
   std::vector<OfBody> bodies_;
   std::vector<OfLink> links_;
-  std::vector<std::size_t> island_;  ///< of each body: the number of its island's first body
+  std::size_t rows_needed_ = 0, blocks_needed_ = 0;  ///< most so far, of one island
+  std::vector<std::size_t> island_;                  ///< of each body: the number of its island's first body
 };
 
 }  // namespace verisim

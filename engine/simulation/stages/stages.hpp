@@ -37,7 +37,7 @@ struct Stages {
     contacts.add_link(world, link);
     methods.add_link(world, contacts, link);
     response.add_link();
-    exact.add_link(methods, link);
+    exact.add_link(world, methods, link);
     passivity.add_link();
     reactions.add_link();
     pair_energy.add_link();

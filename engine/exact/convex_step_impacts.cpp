@@ -1,0 +1,99 @@
+// Rows that are hit, and late ones: see the header.
+#include <cmath>
+#include <limits>
+
+#include "engine/exact/convex_step.hpp"
+
+namespace verisim::exact {
+namespace {
+
+/// While it is hit a row's stiffness is at least that of the lighter body's mass times this by dt^2: the rebound is
+/// right to about (1 + 1 / e) of its inverse.
+constexpr double kRigid = 1e5;
+/// Of the speed of approach times dt: a row that overlaps by more slides, and is not hit.
+constexpr double kOverlapOfHit = 0.25;
+/// m. By so much a row may overlap more than is known without being late: a step along a curve does that.
+constexpr double kUnknown = 1e-5;
+
+}  // namespace
+
+/// Finds the rows that are hit if they close within the step, and makes them rigid; and those that are late.
+void ConvexStep::note_hits(double dt, double threshold) {
+  for (const Run& run : runs_)
+    if (run.pair.restitution > 0 || run.pair.overlap < std::numeric_limits<double>::infinity())
+      note_hits(run, dt, threshold);
+}
+
+void ConvexStep::note_hits(const Run& run, double dt, double threshold) {
+  double stiffest = 0;
+  for (std::size_t r = run.begin; r < run.end; ++r) stiffest = std::max(stiffest, rows_[r].k);
+  double mass = bodies_[at(run.body[0])].M(0, 0);
+  if (run.body[1] != kFixed) mass = std::min(mass, bodies_[at(run.body[1])].M(0, 0));
+  // The same factor for all rows of the pair: one that fades in or out keeps its weight.
+  const double factor = std::max(1.0, kRigid * mass / (dt * dt) / stiffest);
+  for (std::size_t r = run.begin; r < run.end; ++r) {
+    Row& row = rows_[r];
+    const double known = run.pair.overlap + kUnknown;
+    // Bodies that move with u and end with w keep their angular momentum to dt only, so a few are left as they were.
+    const bool watches = bodies_.size() > kDenseMax || run.pair.restitution > 0;
+    if (run.pair.restitution == 0 && -row.g <= known) continue;
+    const double approach = -rate(row, &Body::before);
+    if (watches && -row.g > known + std::max(0.0, approach * dt)) {
+      row.late = late_ = true;
+      row.asked = 0;
+      row.g = std::max(row.g, -run.pair.overlap - kPushOut * dt);
+    } else if (run.pair.restitution > 0 && approach > threshold && -row.g <= kOverlapOfHit * approach * dt) {
+      row.asked = run.pair.restitution * approach;
+      row.k *= factor;
+    }
+    hit_ = hit_ || row.asked >= 0;
+  }
+}
+
+/// From the velocities during the step to the problem of those at its end. False if no row that was hit has closed.
+bool ConvexStep::begin_rebound(double dt) {
+  bool any = false;
+  for (const Row& row : rows_) any = any || (row.asked >= 0 && row.z < 0);
+  hit_ = any;
+  if (!any) return false;
+  for (Row& row : rows_) {
+    // What has not closed is the next step's; so is what was open, and closes only because of the blow: it is handed
+    // on.
+    const bool handed_on = row.asked < 0 && row.g > 0 && row.g + dt * rate(row, &Body::u0) > 0;
+    if (row.z >= 0 || handed_on) {
+      row.g = std::numeric_limits<double>::infinity();
+    } else if (row.asked >= 0) {
+      row.g = -dt * row.asked;
+    }
+  }
+  evaluate_gaps(dt);
+  return true;
+}
+
+/// Takes as much of the rebound as creates no energy. The work of the contacts is that of their impulse A (u - u0)
+/// along the mean of the velocities before and after: a parabola in the fraction s of the rebound that is taken.
+void ConvexStep::end_rebound() {
+  double held = 0;  // J, by springs at the start
+  for (const Row& row : rows_)
+    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * std::min(0.0, row.g) * std::min(0.0, row.g);
+  double work = 0;  // J, without rebound
+  double linear = 0;
+  double quadratic = 0;
+  for (const Body& body : bodies_) {
+    const Vector6d more = body.u - body.during;
+    const Vector6d impulse = body.M * (body.during - body.u0);
+    const Vector6d impulse_more = body.M * more;
+    const Vector6d twice_mean = body.before + body.during;
+    work += 0.5 * impulse.dot(twice_mean);
+    linear += 0.5 * (impulse.dot(more) + impulse_more.dot(twice_mean));
+    quadratic += 0.5 * impulse_more.dot(more);
+  }
+  const double left = std::max(held - work, 0.0);  // s linear + s^2 quadratic is to stay below
+  double s = 1;
+  if (!late_ && linear + quadratic > left)  // u of late rows is of no use: it pushes them apart
+    s = std::clamp(2 * left / (linear + std::sqrt(linear * linear + 4 * quadratic * left)), 0.0, 1.0);
+  for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
+  for (Row& row : rows_) row.force += s * (-row.k * std::min(0.0, row.z) - row.force);
+}
+
+}  // namespace verisim::exact
