@@ -38,7 +38,7 @@ void Passivity::bound(const World& world, const Contacts& contacts, const PairMe
   join_bodies(world, group_, [&](std::size_t l) {
     return contacts.touches(l) && moves(world.links[l].first) && moves(world.links[l].second);
   });
-  bound_groups(world, response, exact, ledger.contact());
+  bound_groups(world, response, exact, ledger.contact() - forfeited_);
 }
 
 void Passivity::bound_groups(const World& world, const Response& response, const ExactResponse& exact, double budget) {
@@ -57,8 +57,12 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (group_[i] == i && watched_[i]) {
       scale_[i] = unbounded_[i] ? 1 : passive_scale(std::max(0.0, budget), work_[i]);
+      const bool limited = scale_[i] < 1;
+      if (limited) scale_[i] = std::min(scale_[i], halting_scale(work_[i]));
       VERISIM_ASSERT(is_fraction(scale_[i]));
-      budget -= work_[i].at(scale_[i]);
+      const double given = work_[i].at(scale_[i]);
+      if (limited && given < 0) forfeited_ -= given;
+      budget -= std::max(given, limited ? 0.0 : given);
     }
     scale_[i] = scale_[group_[i]];
   }
