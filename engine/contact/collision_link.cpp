@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -59,6 +60,8 @@ CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
   shell_ = first_is_map_ ? &second.shell : &first.shell;
   VERISIM_ASSERT(are_covered(*shell_));
   contacts_ = ContactList(shell_->size());
+  depth_before_.resize(shell_->size());
+  queried_in_.resize(shell_->size());
 }
 
 void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& second) {
@@ -81,6 +84,35 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
     verisim::query(*map_mesh_, *points_mesh_, X_MP, map_->origin, contacts_, cost);
   else
     verisim::query(*map_, *shell_, X_MP, contacts_, cost);
+  ++queries_;
+  X_MP_before_ = X_MP_;
+  X_MP_ = X_MP;
+}
+
+void CollisionLink::follow_motion() {
+  geometric_depth_max_ = 0;
+  if (map_mesh_ != nullptr || contacts_.size == 0) return;
+  static const bool kGeometric = std::getenv("GEO") != nullptr;
+  static const bool kScale = std::getenv("NOSCALE") == nullptr;
+  const double softer = kScale && stiffness_ > 0 && stiffness_before_ > 0 ? stiffness_before_ / stiffness_ : 1;
+  const Pose back = X_MP_before_ * X_MP_.inverse();
+  const Matrix3d R = Matrix3d::Identity() - back.rotation.toRotationMatrix();
+  const Vector3d shift = R * map_->origin - back.position;
+  ContactList& c = contacts_;
+  for (std::uint32_t i = 0; i < c.size; ++i) {
+    const Vector3d x(c.x[i], c.y[i], c.z[i]);
+    const Vector3d n(c.nx[i], c.ny[i], c.nz[i]);
+    const Vector3d moved = queries_ > 1 ? Vector3d(R * x + shift) : Vector3d::Zero();
+    const std::uint32_t p = c.point[i];
+    const bool known = queried_in_[p] + 1 == queries_ && queries_ > 1;
+    const double g = c.depth[i];
+    const double d = kGeometric ? g : std::clamp((known ? depth_before_[p] * softer : 0.0) - n.dot(moved), 0.0, g);
+    geometric_depth_max_ = std::max(geometric_depth_max_, g);
+    c.depth[i] = static_cast<float>(d);
+    depth_before_[p] = c.depth[i];
+    queried_in_[p] = queries_;
+  }
+  stiffness_before_ = stiffness_;
 }
 
 void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
@@ -126,6 +158,7 @@ void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const
                             double dt) {
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
+  follow_motion();
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
@@ -140,6 +173,7 @@ void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& secon
   sides = LinkSides();
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
+  follow_motion();
   const Twist relative = relative_twist(first, second);
   give_to_both(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true, sides);
 }
@@ -153,7 +187,7 @@ void CollisionLink::give_to_both(const LinkBody& first, const LinkBody& second, 
   const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
   const Vector3d arm = points.p_WC - map.p_WC;
 
-  depth_max_ = total.depth_max;
+  depth_max_ = map_mesh_ != nullptr ? total.depth_max : geometric_depth_max_;
   on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
   on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
   if (!with_matrices) return;

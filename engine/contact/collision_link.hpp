@@ -80,6 +80,7 @@ class CollisionLink {
   [[nodiscard]] bool first_is_map() const { return first_is_map_; }
 
  private:
+  void follow_motion();
   /// Sets W_, stiffness_ and damping_.
   void choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
   /// Twist of the points' body relative to the map's, at the centre of the points' body, axes of the map's.
@@ -94,6 +95,11 @@ class CollisionLink {
   const MeshTree* map_mesh_ = nullptr;  ///< null: by voxels
   const MeshTree* points_mesh_ = nullptr;
   ContactList contacts_;
+  std::vector<float> depth_before_;         ///< of each point, in the query number queried_in_
+  std::vector<std::uint64_t> queried_in_;
+  std::uint64_t queries_ = 0;
+  Pose X_MP_, X_MP_before_;
+  double geometric_depth_max_ = 0, stiffness_before_ = 0;
   Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
   Vector3d about_ = Vector3d::Zero();
   double stiffness_ = 0, damping_ = 0, depth_max_ = 0;

@@ -1,6 +1,7 @@
 #include "engine/simulation/stages/passivity.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -21,7 +22,8 @@ bool Passivity::watch_links(const World& world, const Contacts& contacts, const 
   for (const std::size_t l : world.near_links) {
     const bool touches = contacts.touches(l);
     const bool before = watched_in_[l] != kNone && watched_in_[l] + 1 == world.frame;
-    if (methods.acting(l) == nullptr && !(before && touches)) continue;
+    static const bool kAll = std::getenv("PASSALL") != nullptr;
+    if (!kAll && methods.acting(l) == nullptr && !(before && touches)) continue;
     watched_in_[l] = world.frame;
     if (!touches) continue;
     watched_[world.links[l].first] = watched_[world.links[l].second] = true;
