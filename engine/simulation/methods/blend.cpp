@@ -36,18 +36,28 @@ class BlendPair final : public PairMethod {
     const RigidBody& points = pair_.points().rigid;
     const Vector3d center_B = points.pose().inverse() * points.p_WC;
     const ConstraintForce pull = constraint_force(sets_.engaged(), X_AB, center_B, spring_);
+    const double alpha = pull.alpha * weight_of(contacts, pull.residual);
     const Matrix3d R_WA = map.R_WB.toRotationMatrix();
     const Wrench pull_W{R_WA * pull.on_b.force, R_WA * pull.on_b.torque};
-    on_points.wrench = blended(on_points.wrench, pull_W, pull.alpha);
+    on_points.wrench = blended(on_points.wrench, pull_W, alpha);
     on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
     for (LinkSide* side : {&on_map, &on_points}) {  // the collision's part of what an implicit step is told
-      side->stiffness *= 1 - pull.alpha;
-      side->damping *= 1 - pull.alpha;
-      side->drift *= 1 - pull.alpha;
+      side->stiffness *= 1 - alpha;
+      side->damping *= 1 - alpha;
+      side->drift *= 1 - alpha;
     }
   }
 
  private:
+  /// The pull takes the place of the collision's response only while the bodies are less deep than a voxel and the
+  /// constraints agree within one: it is as weak as a coupling, and two faces of a thin plate pull opposite ways.
+  [[nodiscard]] double weight_of(const ContactList& contacts, double residual) const {
+    const double voxel = std::max(pair_.map().voxels->voxmap.voxel_size, pair_.points().voxels->voxmap.voxel_size);
+    const double deepest = pair_.contact.depth_max();
+    (void)contacts;
+    return std::clamp(2 - deepest / voxel, 0.0, 1.0) * std::clamp(2 - residual / voxel, 0.0, 1.0);
+  }
+
   Pair pair_;
   SetLookUp sets_;
   BlendParameters spring_;
