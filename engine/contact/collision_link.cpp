@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -61,7 +60,7 @@ CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
   VERISIM_ASSERT(are_covered(*shell_));
   contacts_ = ContactList(shell_->size());
   depth_before_.resize(shell_->size());
-  queried_in_.resize(shell_->size());
+  met_in_.resize(shell_->size());
 }
 
 void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& second) {
@@ -72,7 +71,7 @@ void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& sec
 
 void CollisionLink::clear() {
   contacts_.size = 0;
-  depth_max_ = stiffness_ = 0;
+  depth_max_ = deepest_ = stiffness_ = 0;
 }
 
 void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
@@ -90,27 +89,25 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
 }
 
 void CollisionLink::follow_motion() {
-  geometric_depth_max_ = 0;
-  if (map_mesh_ != nullptr || contacts_.size == 0) return;
-  static const bool kGeometric = std::getenv("GEO") != nullptr;
-  static const bool kScale = std::getenv("NOSCALE") == nullptr;
-  const double softer = kScale && stiffness_ > 0 && stiffness_before_ > 0 ? stiffness_before_ / stiffness_ : 1;
-  const Pose back = X_MP_before_ * X_MP_.inverse();
-  const Matrix3d R = Matrix3d::Identity() - back.rotation.toRotationMatrix();
-  const Vector3d shift = R * map_->origin - back.position;
+  if (map_mesh_ != nullptr) return;
+  const bool moved_before = queries_ > 1;
+  const double softer = stiffness_ > 0 ? stiffness_before_ / stiffness_ : 0;  // the forces go on as they were
+  const Pose back = X_MP_before_ * X_MP_.inverse();                           // to where B's points were
+  const Matrix3d turned = Matrix3d::Identity() - back.rotation.toRotationMatrix();
+  const Vector3d moved = turned * map_->origin - back.position;
   ContactList& c = contacts_;
   for (std::uint32_t i = 0; i < c.size; ++i) {
-    const Vector3d x(c.x[i], c.y[i], c.z[i]);
-    const Vector3d n(c.nx[i], c.ny[i], c.nz[i]);
-    const Vector3d moved = queries_ > 1 ? Vector3d(R * x + shift) : Vector3d::Zero();
     const std::uint32_t p = c.point[i];
-    const bool known = queried_in_[p] + 1 == queries_ && queries_ > 1;
-    const double g = c.depth[i];
-    const double d = kGeometric ? g : std::clamp((known ? depth_before_[p] * softer : 0.0) - n.dot(moved), 0.0, g);
-    geometric_depth_max_ = std::max(geometric_depth_max_, g);
-    c.depth[i] = static_cast<float>(d);
-    depth_before_[p] = c.depth[i];
-    queried_in_[p] = queries_;
+    const double depth = c.depth[i];
+    const double began = moved_before && met_in_[p] + 1 == queries_ ? depth_before_[p] * softer : 0;
+    double way_in = 0;
+    if (moved_before) {
+      const Vector3d way = turned * Vector3d(c.x[i], c.y[i], c.z[i]) + moved;
+      way_in = -(c.nx[i] * way.x() + c.ny[i] * way.y() + c.nz[i] * way.z());
+    }
+    deepest_ = std::max(deepest_, depth);
+    depth_before_[p] = c.depth[i] = static_cast<float>(std::clamp(began + way_in, 0.0, depth));
+    met_in_[p] = queries_;
   }
   stiffness_before_ = stiffness_;
 }
@@ -187,7 +184,7 @@ void CollisionLink::give_to_both(const LinkBody& first, const LinkBody& second, 
   const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
   const Vector3d arm = points.p_WC - map.p_WC;
 
-  depth_max_ = map_mesh_ != nullptr ? total.depth_max : geometric_depth_max_;
+  depth_max_ = std::max(total.depth_max, deepest_);
   on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
   on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
   if (!with_matrices) return;

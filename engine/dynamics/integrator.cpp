@@ -96,7 +96,6 @@ ContactWork& ContactWork::operator+=(const ContactWork& other) {
   all += other.all;
   quadratic += other.quadratic;
   linear += other.linear;
-  at_start += other.at_start;
   return *this;
 }
 
@@ -113,13 +112,6 @@ double passive_scale(double available, const ContactWork& work) {
   if (!(a > 0)) return 0;
   const double scale = (std::sqrt(b * b + 4 * a * available) - b) / (2 * a);
   return scale > 0 ? std::min(scale, 1.0) : 0;  // nor may this be: inf - inf
-}
-
-double halting_scale(const ContactWork& work) {
-  if (work.at_start > 0) return 1;
-  const double to_stop = 0.5 * work.at_start - work.linear;  // -dt/2 f.u_free: what the wrench has to take away
-  if (!(work.quadratic > to_stop)) return 1;
-  return to_stop > 0 ? to_stop / work.quadratic : 0;
 }
 
 namespace {
@@ -159,7 +151,7 @@ ContactWork contact_work_semi_implicit(const RigidBody& body, const Loads& loads
   const Vector6d f = stacked(contact);
   const double quadratic = 0.5 * dt * f.dot(velocity_change(body, inertia_inverse, contact, dt));
   const double linear = 0.5 * dt * f.dot(before_and_free);
-  return {quadratic + linear, quadratic, linear, dt * f.dot(stacked(body.v_C, body.omega))};
+  return {quadratic + linear, quadratic, linear};
 }
 
 StepWork step_semi_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale) {
@@ -298,7 +290,7 @@ ContactWork contact_work_implicit(const RigidBody& body, const Loads& loads, dou
   const Vector6d u0 = stacked(body.v_C, body.omega);
   const auto work_along = [&](const Vector6d& velocities) { return 0.5 * dt * divided.contact.dot(velocities); };
   return {work_along(u0 + divided.with_all), work_along(divided.with_all - divided.free.free),
-          work_along(u0 + divided.free.free), work_along(2 * u0)};
+          work_along(u0 + divided.free.free)};
 }
 
 StepWork step_implicit(RigidBody& body, const Loads& loads, double dt, double contact_scale) {

@@ -93,7 +93,6 @@ struct StepWork {
 /// the step itself.
 struct ContactWork {
   double all = 0, quadratic = 0, linear = 0;
-  double at_start = 0;  ///< what it would be with the velocity at the start in place of the mean: below 0, approaching
   ContactWork& operator+=(const ContactWork& other);
   [[nodiscard]] double at(double scale) const;  ///< @pre scale is in [0, 1]
 };
@@ -103,9 +102,6 @@ struct ContactWork {
 /// Largest scale at which the work does not exceed the energy available [J]. Exactly 1 if w(1) does not; 0 if the work
 /// is beyond double precision. @pre available >= 0
 [[nodiscard]] double passive_scale(double available, const ContactWork& work);
-/// Scale at which contacts that are approached at the start of the step are at rest at its end, along their wrench; 1 if
-/// all of the wrench does not stop them, or if they are not approached.
-[[nodiscard]] double halting_scale(const ContactWork& work);
 
 /// [J] of a potential whose force on the body is `force`, while steps of step_semi_implicit advance it (see above).
 [[nodiscard]] inline double shadow_energy(const Wrench& force, const RigidBody& body, double dt) {

@@ -33,6 +33,9 @@ struct SimulationParameters {
   double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
   Hybrid hybrid = hybrid::restore;  ///< where both bodies have b-reps; of two that differ the lesser acts
+  /// Nobody named a method, or an integrator: where `exact` can act, it does, and its steps are implicit
+  /// (make_world.cpp). A scenario's default; a Scene that is made here names both.
+  bool hybrid_by_default = false, integrator_by_default = false;
   ContactMethod contact = ContactMethod::voxmap;
   AlignmentMeasure alignment = AlignmentMeasure::by_type;
   Reduction reduction = Reduction::common_freedom;

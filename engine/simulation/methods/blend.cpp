@@ -36,7 +36,7 @@ class BlendPair final : public PairMethod {
     const RigidBody& points = pair_.points().rigid;
     const Vector3d center_B = points.pose().inverse() * points.p_WC;
     const ConstraintForce pull = constraint_force(sets_.engaged(), X_AB, center_B, spring_);
-    const double alpha = pull.alpha * weight_of(contacts, pull.residual);
+    const double alpha = pull.alpha * weight_of(pull.residual);
     const Matrix3d R_WA = map.R_WB.toRotationMatrix();
     const Wrench pull_W{R_WA * pull.on_b.force, R_WA * pull.on_b.torque};
     on_points.wrench = blended(on_points.wrench, pull_W, alpha);
@@ -49,13 +49,13 @@ class BlendPair final : public PairMethod {
   }
 
  private:
-  /// The pull takes the place of the collision's response only while the bodies are less deep than a voxel and the
-  /// constraints agree within one: it is as weak as a coupling, and two faces of a thin plate pull opposite ways.
-  [[nodiscard]] double weight_of(const ContactList& contacts, double residual) const {
-    const double voxel = std::max(pair_.map().voxels->voxmap.voxel_size, pair_.points().voxels->voxmap.voxel_size);
-    const double deepest = pair_.contact.depth_max();
-    (void)contacts;
-    return std::clamp(2 - deepest / voxel, 0.0, 1.0) * std::clamp(2 - residual / voxel, 0.0, 1.0);
+  /// Fraction of the pull that takes the place of the collision's response. The pull is a hand's, and as weak: nothing
+  /// where nobody holds one of the two; less where they are deeper than a voxel, for it could not stop them; and less
+  /// where the constraints contradict each other by more than one, as those of the two faces of a thin plate.
+  [[nodiscard]] double weight_of(double residual) const {
+    if (pair_.map().held_by == kNone && pair_.points().held_by == kNone) return 0;
+    const double voxel = std::max(pair_.map().voxel_size, pair_.points().voxel_size);
+    return std::clamp(2 - pair_.contact.depth_max() / voxel, 0.0, 1.0) * std::clamp(2 - residual / voxel, 0.0, 1.0);
   }
 
   Pair pair_;

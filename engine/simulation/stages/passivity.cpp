@@ -1,7 +1,6 @@
 #include "engine/simulation/stages/passivity.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -22,8 +21,7 @@ bool Passivity::watch_links(const World& world, const Contacts& contacts, const 
   for (const std::size_t l : world.near_links) {
     const bool touches = contacts.touches(l);
     const bool before = watched_in_[l] != kNone && watched_in_[l] + 1 == world.frame;
-    static const bool kAll = std::getenv("PASSALL") != nullptr;
-    if (!kAll && methods.acting(l) == nullptr && !(before && touches)) continue;
+    if (methods.acting(l) == nullptr && !(before && touches)) continue;
     watched_in_[l] = world.frame;
     if (!touches) continue;
     watched_[world.links[l].first] = watched_[world.links[l].second] = true;
@@ -40,7 +38,7 @@ void Passivity::bound(const World& world, const Contacts& contacts, const PairMe
   join_bodies(world, group_, [&](std::size_t l) {
     return contacts.touches(l) && moves(world.links[l].first) && moves(world.links[l].second);
   });
-  bound_groups(world, response, exact, ledger.contact() - forfeited_);
+  bound_groups(world, response, exact, ledger.contact());
 }
 
 void Passivity::bound_groups(const World& world, const Response& response, const ExactResponse& exact, double budget) {
@@ -59,12 +57,8 @@ void Passivity::bound_groups(const World& world, const Response& response, const
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (group_[i] == i && watched_[i]) {
       scale_[i] = unbounded_[i] ? 1 : passive_scale(std::max(0.0, budget), work_[i]);
-      const bool limited = scale_[i] < 1;
-      if (limited) scale_[i] = std::min(scale_[i], halting_scale(work_[i]));
       VERISIM_ASSERT(is_fraction(scale_[i]));
-      const double given = work_[i].at(scale_[i]);
-      if (limited && given < 0) forfeited_ -= given;
-      budget -= std::max(given, limited ? 0.0 : given);
+      budget -= work_[i].at(scale_[i]);
     }
     scale_[i] = scale_[group_[i]];
   }

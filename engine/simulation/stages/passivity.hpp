@@ -35,7 +35,6 @@ class Passivity {
   std::vector<std::size_t> group_;  ///< of each body: the first body of its group
   std::vector<ContactWork> work_;   ///< of groups, by their first body
   std::vector<double> scale_;
-  double forfeited_ = 0;  ///< J, received in steps that were limited: not given back
 };
 
 }  // namespace verisim

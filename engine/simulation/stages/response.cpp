@@ -1,6 +1,5 @@
 #include "engine/simulation/stages/response.hpp"
 
-#include <cstdlib>
 #include "engine/base/error.hpp"
 #include "engine/simulation/stages/grasping.hpp"
 
@@ -92,17 +91,20 @@ void Response::respond(const World& world, std::size_t l, const Contacts& contac
   const SimulationParameters& p = world.parameters;
   const bool at_start = is_explicit(world, l);
   const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start};
+  if (method == nullptr) {
+    link.respond(first, second, penalty, world.dt);
+    link.sum_up(first, second, !at_start, sides);
+    return;
+  }
   const Pose X_AB = contacts.X_AB(world, l);
-  static const bool kOld = std::getenv("OLD") != nullptr;
-  const bool changed = method != nullptr && (!kOld || !at_start) && method->act_on_normals(link.contacts(), X_AB);
+  const bool changed = method->act_on_normals(link.contacts(), X_AB);
   if (!at_start && changed) {
     link.respond_at_once(first, second, penalty, world.dt, sides);
   } else {
     link.respond(first, second, penalty, world.dt);
-    if (kOld && method && at_start) method->act_on_forces(link.contacts(), X_AB);
+    if (at_start) method->act_on_forces(link.contacts(), X_AB);
     link.sum_up(first, second, !at_start, sides);
   }
-  if (method == nullptr) return;
   method->act_on_sides(link.contacts(), X_AB, sides);
 }
 
