@@ -155,7 +155,7 @@ void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const
                             double dt) {
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
-  follow_motion();
+  if (parameters.from_touch) follow_motion();
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
@@ -170,7 +170,7 @@ void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& secon
   sides = LinkSides();
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
-  follow_motion();
+  if (parameters.from_touch) follow_motion();
   const Twist relative = relative_twist(first, second);
   give_to_both(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true, sides);
 }

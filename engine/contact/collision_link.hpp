@@ -9,7 +9,7 @@
 // is a step deep at once, and where normals turn from voxel to voxel the depth of a point that slides goes up and down
 // as a saw. A force of such a depth belongs to no potential: it throws what touches, and nothing comes to rest. So the
 // spring of a point is pressed by what the point has come inwards along its contact's normal since it touched (in the
-// first frame: in that frame), and never by more than the depth. It gives back what it was given. Where the stability
+// first frame: in that frame), and never by more than the depth (PenaltyParameters::from_touch). It gives back what it was given. Where the stability
 // rule changes the stiffness, the springs keep their forces. Reported depths are those of the places. Contacts of
 // triangles (find_by_triangles) have no memory: their depths are of a continuous surface.
 #pragma once
@@ -38,6 +38,7 @@ struct PenaltyParameters {
   double stiffness_max = 1000;  ///< N/m per contact
   double damping_ratio = 0.5;   ///< of critical
   bool stabilize = true;        ///< apply the stability rule of penalty.hpp
+  bool from_touch = false;      ///< springs begin where contacts began; else depths press them as the voxels give these
 };
 
 /// The response on one body.

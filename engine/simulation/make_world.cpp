@@ -123,7 +123,7 @@ void choose_integrator(const Scene& scene, World& world, std::vector<Event>& eve
   const auto is_blended = [&](const BodyDescription& b) {
     return b.hybrid.value_or(world.parameters.hybrid) == hybrid::blend;
   };
-  if (scene.devices.empty() && std::any_of(scene.bodies.begin(), scene.bodies.end(), is_blended))
+  if (world.parameters.all_bodies_are_dynamic && std::any_of(scene.bodies.begin(), scene.bodies.end(), is_blended))
     events.push_back(
         {0, "hybrid", "'blend' pulls as a hand does: where no hand holds one of two bodies it acts as 'off'"});
 }

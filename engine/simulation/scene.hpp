@@ -46,7 +46,9 @@ struct SimulationParameters {
   bool all_bodies_are_dynamic = false;  ///< false: bodies that no device holds do not move
   double contact_stiffness = 10000;     ///< N/m per contact, before the stability rule (contact/penalty.hpp)
   double contact_damping_ratio = 0.5;   ///< of the critical damping of the contact stiffness in force
-  bool passive_contacts = true;  ///< contacts that `restore` or `blend` changed give no more energy than they got
+  /// Voxels' contacts give back what they were given: their springs begin where they began (contact/collision_link.hpp),
+  /// and what `restore` or `blend` changed is bounded (stages/passivity.hpp). False: depths act as the voxels give them.
+  bool passive_contacts = true;
 };
 
 struct BodyDescription {

@@ -35,6 +35,7 @@ class Half final : public HybridMethod {
 /// The first contact of a pin that a hand pushes against the wall.
 Vector3d first_force(Hybrid of_block, Hybrid of_pin, bool enabled = true) {
   Scene scene = scenes::brep_pin_in_hole(of_pin);
+  scene.parameters.passive_contacts = false;  // the whole depth acts at once
   scene.bodies[0].hybrid = of_block;
   scene.bodies[0].hybrid_enabled = enabled;
   Simulation simulation(scene, {});

@@ -50,10 +50,11 @@ class BlendPair final : public PairMethod {
 
  private:
   /// Fraction of the pull that takes the place of the collision's response. The pull is a hand's, and as weak: nothing
-  /// where nobody holds one of the two; less where they are deeper than a voxel, for it could not stop them; and less
+  /// where bodies move that nobody holds; less where they are deeper than a voxel, for it could not stop them; and less
   /// where the constraints contradict each other by more than one, as those of the two faces of a thin plate.
   [[nodiscard]] double weight_of(double residual) const {
-    if (pair_.map().held_by == kNone && pair_.points().held_by == kNone) return 0;
+    const bool is_held = pair_.map().held_by != kNone || pair_.points().held_by != kNone;
+    if (pair_.parameters.all_bodies_are_dynamic && !is_held) return 0;
     const double voxel = std::max(pair_.map().voxel_size, pair_.points().voxel_size);
     return std::clamp(2 - pair_.contact.depth_max() / voxel, 0.0, 1.0) * std::clamp(2 - residual / voxel, 0.0, 1.0);
   }

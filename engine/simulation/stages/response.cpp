@@ -90,7 +90,7 @@ void Response::respond(const World& world, std::size_t l, const Contacts& contac
   LinkSides& sides = sides_[l];
   const SimulationParameters& p = world.parameters;
   const bool at_start = is_explicit(world, l);
-  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start};
+  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start, p.passive_contacts};
   if (method == nullptr) {
     link.respond(first, second, penalty, world.dt);
     link.sum_up(first, second, !at_start, sides);
