@@ -7,13 +7,9 @@
 namespace verisim::add_a_method_test {
 namespace {
 
-/// Leaves half of every force, and of every normal in implicit steps: half of its direction's force is gone as well.
+/// Leaves half of every force of explicit steps.
 class HalfPair final : public PairMethod {
  public:
-  bool act_on_normals(ContactList& contacts, const Pose& /*X_AB*/) override {
-    for (auto* column : {&contacts.nx, &contacts.ny, &contacts.nz}) halve(*column, contacts.size);
-    return true;
-  }
   void act_on_forces(ContactList& contacts, const Pose& /*X_AB*/) override {
     for (auto* column : {&contacts.fx, &contacts.fy, &contacts.fz}) halve(*column, contacts.size);
   }

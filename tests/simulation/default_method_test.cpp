@@ -59,6 +59,7 @@ TEST(DefaultMethod, IsRestoreWhereTheIntegratorIsNamed) {
   Scene scene = nothing_named();
   scene.parameters.integrator_by_default = false;
   expect_restore(scene, "integrator = \"semi-implicit\" was asked for");
+  scene.devices = {scenes::hand_of_brep_pin()};  // a hand remembers
   scene.parameters.integrator = Integrator::implicit;
   EXPECT_EQ(Chosen(scene).method, "exact");
 }

@@ -106,6 +106,7 @@ TEST(Hybrid, RestoresNormalsAsItRestoresForces) {
     for (const double height : {0.06, 0.1, 0.14}) {  // the last: standing half in the rim
       Scene scene = standing_pin(hybrid::restore);
       scene.bodies[kPin].X_WB.position = {x, 0.001, height};
+      scene.devices = {scenes::hand_along({{1, 0, 1}}, 0.5)};  // out of reach: nobody holds the pin
       const Frame normals = frame_of(scene);
       scene.parameters.integrator = Integrator::semi_implicit;
       const Frame forces = frame_of(scene);
