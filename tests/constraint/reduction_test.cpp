@@ -45,7 +45,7 @@ TEST(CommonFreedom, OfAThinPlateKeepsThePushOfEitherFace) {
     EXPECT_LE((restore_both(top, bottom, f) - Vector3d(0, 0, z)).norm(), tolerance(1e-15));
     EXPECT_LE((restore_both(bottom, top, f) - Vector3d(0, 0, z)).norm(), tolerance(1e-15));
   }
-  EXPECT_LE(restore_both(top, top, kF).norm(), tolerance(1e-15)) << "one face pushes one way";
+  EXPECT_LE(restore_both(top, top, -kF).norm(), tolerance(1e-15)) << "one face pushes one way";
 }
 
 TEST(CommonFreedom, OfThreeWallsIsNothing) {

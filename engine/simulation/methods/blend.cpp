@@ -36,7 +36,7 @@ class BlendPair final : public PairMethod {
     const RigidBody& points = pair_.points().rigid;
     const Vector3d center_B = points.pose().inverse() * points.p_WC;
     const ConstraintForce pull = constraint_force(sets_.engaged(), X_AB, center_B, spring_);
-    const double alpha = pull.alpha * weight_of(pull.residual);
+    const double alpha = is_pulled() ? pull.alpha : 0;
     const Matrix3d R_WA = map.R_WB.toRotationMatrix();
     const Wrench pull_W{R_WA * pull.on_b.force, R_WA * pull.on_b.torque};
     on_points.wrench = blended(on_points.wrench, pull_W, alpha);
@@ -49,14 +49,10 @@ class BlendPair final : public PairMethod {
   }
 
  private:
-  /// Fraction of the pull that takes the place of the collision's response. The pull is a hand's, and as weak: nothing
-  /// where bodies move that nobody holds; less where they are deeper than a voxel, for it could not stop them; and less
-  /// where the constraints contradict each other by more than one, as those of the two faces of a thin plate.
-  [[nodiscard]] double weight_of(double residual) const {
-    const bool is_held = pair_.map().held_by != kNone || pair_.points().held_by != kNone;
-    if (pair_.parameters.all_bodies_are_dynamic && !is_held) return 0;
-    const double voxel = std::max(pair_.map().voxel_size, pair_.points().voxel_size);
-    return std::clamp(2 - pair_.contact.depth_max() / voxel, 0.0, 1.0) * std::clamp(2 - residual / voxel, 0.0, 1.0);
+  /// The pull is a hand's, and as weak: it cannot hold up what falls, nor stop what flies. @returns whether one of the
+  /// bodies is held, or none of them moves
+  [[nodiscard]] bool is_pulled() const {
+    return !pair_.parameters.all_bodies_are_dynamic || pair_.map().held_by != kNone || pair_.points().held_by != kNone;
   }
 
   Pair pair_;
