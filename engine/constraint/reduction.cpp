@@ -59,6 +59,10 @@ inline Vector3d free_part(const std::array<ActiveNormal, count>& normals, Basis&
     basis.m[size] = m;
     basis.scale[size] = independence > 0 ? independence / square : 0;
     Vector3d left = rest;
+    // A wall thinner than a voxel has two faces there that push opposite ways. The first left what it does not push.
+    const Vector3d repeated = h.n - m;
+    const double opposed = rest.dot(repeated);
+    if (h.unilateral && opposed < 0) left -= (1 - independence) * opposed / repeated.squaredNorm() * repeated;
     const double along = rest.dot(m);
     if (!h.unilateral || along < 0) left -= basis.scale[size] * along * m;
     return total + free_part<i + 1, size + 1>(normals, basis, left, weight * h.alpha);

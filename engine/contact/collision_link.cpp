@@ -59,6 +59,8 @@ CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
   shell_ = first_is_map_ ? &second.shell : &first.shell;
   VERISIM_ASSERT(are_covered(*shell_));
   contacts_ = ContactList(shell_->size());
+  depth_before_.resize(shell_->size());
+  met_in_.resize(shell_->size());
 }
 
 void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& second) {
@@ -69,7 +71,7 @@ void CollisionLink::find_by_triangles(const MeshTree& first, const MeshTree& sec
 
 void CollisionLink::clear() {
   contacts_.size = 0;
-  depth_max_ = stiffness_ = 0;
+  depth_max_ = deepest_ = stiffness_ = 0;
 }
 
 void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
@@ -81,6 +83,33 @@ void CollisionLink::query(const Pose& X_W1, const Pose& X_W2, QueryCost& cost) {
     verisim::query(*map_mesh_, *points_mesh_, X_MP, map_->origin, contacts_, cost);
   else
     verisim::query(*map_, *shell_, X_MP, contacts_, cost);
+  ++queries_;
+  X_MP_before_ = X_MP_;
+  X_MP_ = X_MP;
+}
+
+void CollisionLink::follow_motion() {
+  if (map_mesh_ != nullptr) return;
+  const bool moved_before = queries_ > 1;
+  const double softer = stiffness_ > 0 ? stiffness_before_ / stiffness_ : 0;  // the forces go on as they were
+  const Pose back = X_MP_before_ * X_MP_.inverse();                           // to where B's points were
+  const Matrix3d turned = Matrix3d::Identity() - back.rotation.toRotationMatrix();
+  const Vector3d moved = turned * map_->origin - back.position;
+  ContactList& c = contacts_;
+  for (std::uint32_t i = 0; i < c.size; ++i) {
+    const std::uint32_t p = c.point[i];
+    const double depth = c.depth[i];
+    const double began = moved_before && met_in_[p] + 1 == queries_ ? depth_before_[p] * softer : 0;
+    double way_in = 0;
+    if (moved_before) {
+      const Vector3d way = turned * Vector3d(c.x[i], c.y[i], c.z[i]) + moved;
+      way_in = -(c.nx[i] * way.x() + c.ny[i] * way.y() + c.nz[i] * way.z());
+    }
+    deepest_ = std::max(deepest_, depth);
+    depth_before_[p] = c.depth[i] = static_cast<float>(std::clamp(began + way_in, 0.0, depth));
+    met_in_[p] = queries_;
+  }
+  stiffness_before_ = stiffness_;
 }
 
 void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
@@ -126,6 +155,7 @@ void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const
                             double dt) {
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
+  if (parameters.from_touch) follow_motion();
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
@@ -140,6 +170,7 @@ void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& secon
   sides = LinkSides();
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
+  if (parameters.from_touch) follow_motion();
   const Twist relative = relative_twist(first, second);
   give_to_both(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true, sides);
 }
@@ -153,7 +184,7 @@ void CollisionLink::give_to_both(const LinkBody& first, const LinkBody& second, 
   const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
   const Vector3d arm = points.p_WC - map.p_WC;
 
-  depth_max_ = total.depth_max;
+  depth_max_ = std::max(total.depth_max, deepest_);
   on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
   on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
   if (!with_matrices) return;

@@ -4,6 +4,14 @@
 // The pair is (first, second) in the order in which the scenario added the bodies. One provides the points (the one
 // with fewer, the second if equal), the other the voxmap. Contact lists are in the body coordinates of the voxmap's
 // body, relative to its grid origin. Results are in world coordinates.
+//
+// A contact's spring begins where the contact began. A voxel's depth jumps: a point that enters a voxel from the side
+// is a step deep at once, and where normals turn from voxel to voxel the depth of a point that slides goes up and down
+// as a saw. A force of such a depth belongs to no potential: it throws what touches, and nothing comes to rest. So the
+// spring of a point is pressed by what the point has come inwards along its contact's normal since it touched (in the
+// first frame: in that frame), and never by more than the depth (PenaltyParameters::from_touch). It gives back what it was given. Where the stability
+// rule changes the stiffness, the springs keep their forces. Reported depths are those of the places. Contacts of
+// triangles (find_by_triangles) have no memory: their depths are of a continuous surface.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +38,7 @@ struct PenaltyParameters {
   double stiffness_max = 1000;  ///< N/m per contact
   double damping_ratio = 0.5;   ///< of critical
   bool stabilize = true;        ///< apply the stability rule of penalty.hpp
+  bool from_touch = false;      ///< springs begin where contacts began; else depths press them as the voxels give these
 };
 
 /// The response on one body.
@@ -80,6 +89,8 @@ class CollisionLink {
   [[nodiscard]] bool first_is_map() const { return first_is_map_; }
 
  private:
+  /// Replaces each contact's depth by how far its spring is pressed (see above).
+  void follow_motion();
   /// Sets W_, stiffness_ and damping_.
   void choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
   /// Twist of the points' body relative to the map's, at the centre of the points' body, axes of the map's.
@@ -94,6 +105,12 @@ class CollisionLink {
   const MeshTree* map_mesh_ = nullptr;  ///< null: by voxels
   const MeshTree* points_mesh_ = nullptr;
   ContactList contacts_;
+  std::vector<float> depth_before_;    ///< m, of each point: how far its spring was pressed in query met_in_
+  std::vector<std::uint64_t> met_in_;  ///< query in which each point was last in contact, from 1; 0: never
+  std::uint64_t queries_ = 0;
+  Pose X_MP_, X_MP_before_;  ///< of the points' body in the map's, in this query and in the one before
+  double stiffness_before_ = 0;
+  double deepest_ = 0;             ///< m, of the places, not of the springs
   Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
   Vector3d about_ = Vector3d::Zero();
   double stiffness_ = 0, damping_ = 0, depth_max_ = 0;

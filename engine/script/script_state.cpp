@@ -22,6 +22,7 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
       options(scenario_options),
       inputs(scenario_inputs) {
   lua_State* L = lua();
+  scene.parameters.hybrid_by_default = scene.parameters.integrator_by_default = true;
   if (options.seed) scene.parameters.seed = *options.seed;
   add_parameter_words(L);
   add_scene_words(L);

@@ -40,9 +40,12 @@ constexpr Named<AlignmentMeasure> kAlignments[] = {
 constexpr Named<Reduction> kReductions[] = {{"common-freedom", Reduction::common_freedom},
                                             {"exactly-one", Reduction::exactly_one}};
 
+/// Returns whether the field is there.
 template <typename Values, typename Value>
-void read_named(lua_State* L, Fields& fields, const char* field, const Values& values, Value& value) {
-  if (const auto name = fields.text(field)) value = named(L, field, *name, values);
+bool read_named(lua_State* L, Fields& fields, const char* field, const Values& values, Value& value) {
+  const auto name = fields.text(field);
+  if (name) value = named(L, field, *name, values);
+  return name.has_value();
 }
 
 // Words of SPARTA that have no effect here, reported once.
@@ -67,8 +70,8 @@ int define_simulation_parameters(lua_State* L) {
   }
   if (const auto duration = fields.positive("duration")) p.duration = duration;
   p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
-  read_named(L, fields, "integrator", kIntegrators, p.integrator);
-  read_named(L, fields, "hybrid", hybrids(), p.hybrid);
+  if (read_named(L, fields, "integrator", kIntegrators, p.integrator)) p.integrator_by_default = false;
+  if (read_named(L, fields, "hybrid", hybrids(), p.hybrid)) p.hybrid_by_default = false;
   read_named(L, fields, "contact", kContactMethods, p.contact);
   read_named(L, fields, "alignment", kAlignments, p.alignment);
   read_named(L, fields, "reduction", kReductions, p.reduction);

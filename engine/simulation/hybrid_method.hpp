@@ -4,7 +4,7 @@
 // PairMethod, which owns whatever the method keeps for that pair and is called at fixed places of each frame:
 //
 //     query      contacts of the voxels are found          needs_voxels, take_over
-//     response   their forces are computed and summed      act_on_normals or act_on_forces, then act_on_sides
+//     response   their forces are computed and summed      act_on_normals, act_on_forces, act_on_sides
 //     exact      precise contacts are solved               precise
 //
 // Which method acts on a pair: of the two bodies' methods that of lower precedence; none ("off") while one of the two
@@ -58,10 +58,9 @@ class PairMethod {
   [[nodiscard]] virtual bool needs_voxels() const { return true; }
   /// Removes from the voxels' contacts those that the method answers itself. Keeps the order.
   virtual void take_over(ContactList& /*contacts*/) const {}
-  /// Before there are forces, in implicit steps against a body that does not move: changes the contacts' normals, unit
-  /// or shorter. Returns whether it changed any.
+  /// Before there are forces: changes the contacts' normals, unit or shorter. Returns whether it changed any.
   virtual bool act_on_normals(ContactList& /*contacts*/, const Pose& /*X_AB*/) { return false; }
-  /// After each contact has its force, before the sum, in all other cases: changes the forces.
+  /// After each contact has its force, before the sum, where the step is explicit: changes the forces.
   virtual void act_on_forces(ContactList& /*contacts*/, const Pose& /*X_AB*/) {}
   /// After the sum: changes what both bodies get. What is taken from one side is to be taken from the other.
   virtual void act_on_sides(const ContactList& /*contacts*/, const Pose& /*X_AB*/, LinkSides& /*sides*/) {}

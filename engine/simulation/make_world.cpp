@@ -71,6 +71,45 @@ double gap(const Bounds& a, const Bounds& b) {
 
 namespace {
 
+bool can_move(const Scene& scene, std::size_t index) {
+  const BodyDescription& body = scene.bodies[index];
+  if (body.fixed) return false;
+  if (scene.parameters.all_bodies_are_dynamic || (body.selectable && !scene.devices.empty())) return true;
+  return std::any_of(scene.grasps.begin(), scene.grasps.end(), [&](const Grasp& g) { return g.body == index; });
+}
+
+/// Why `exact` is not the method of a scene that names none; empty: it is.
+std::string reason_against_exact(const Scene& scene) {
+  const SimulationParameters& p = scene.parameters;
+  if (p.contact == ContactMethod::fcl) return "contact = \"fcl\" finds triangles";
+  if (!p.integrator_by_default && p.integrator != Integrator::implicit)
+    return "integrator = \"semi-implicit\" was asked for, and 'exact' is implicit";
+  std::size_t known = 0;
+  std::size_t solved = 0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!will_be_exact(scene.bodies[i], scene.bodies[i].hybrid.value_or(hybrid::exact))) continue;
+    ++known;
+    if (can_move(scene, i)) ++solved;
+  }
+  if (known < 2) return "fewer than two bodies have faces that 'exact' knows";
+  if (solved > static_cast<std::size_t>(exact::ConvexStep::kDenseMax))
+    return fmt::format("{} bodies would move, and more than {} take 'exact' milliseconds a frame", solved,
+                       exact::ConvexStep::kDenseMax);
+  return {};
+}
+
+/// The method of a scene that names none: `exact` if it can act, else `restore`, and an event says why.
+void choose_method(const Scene& scene, World& world, std::vector<Event>& events) {
+  if (!world.parameters.hybrid_by_default || scene.bodies.size() < 2) return;
+  const std::string reason = reason_against_exact(scene);
+  if (reason.empty())
+    world.parameters.hybrid = hybrid::exact;
+  else
+    events.push_back(
+        {0, "hybrid",
+         fmt::format("no method was named: '{}' acts, not 'exact': {}", world.parameters.hybrid->name(), reason)});
+}
+
 /// Precise surfaces need the implicit integrator; FCL's contacts belong to no voxel whose faces would be known.
 void choose_integrator(const Scene& scene, World& world, std::vector<Event>& events) {
   bool asked_for = false;
@@ -84,6 +123,12 @@ void choose_integrator(const Scene& scene, World& world, std::vector<Event>& eve
     events.push_back({0, "hybrid",
                       "contact = \"fcl\" finds triangles, not voxels with faces: every contact is as with hybrid = "
                       "\"off\""});
+  const auto is_blended = [&](const BodyDescription& b) {
+    return b.hybrid.value_or(world.parameters.hybrid) == hybrid::blend;
+  };
+  if (world.parameters.all_bodies_are_dynamic && std::any_of(scene.bodies.begin(), scene.bodies.end(), is_blended))
+    events.push_back(
+        {0, "hybrid", "'blend' pulls as a hand does: where no hand holds one of two bodies it acts as 'off'"});
 }
 
 /// Gravity pulls at what moves freely. Held bodies follow their device, as SPARTA's do: they have weight only where all
@@ -116,10 +161,7 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.method = p.contact == ContactMethod::fcl ? hybrid::off : description.hybrid.value_or(p.hybrid);
   body.hybrid_enabled = description.hybrid_enabled;
   body.selectable = description.selectable && !description.fixed;
-  const bool grasped =
-      std::any_of(scene.grasps.begin(), scene.grasps.end(), [&](const Grasp& g) { return g.body == index; });
-  body.can_move =
-      !description.fixed && (p.all_bodies_are_dynamic || grasped || (body.selectable && !scene.devices.empty()));
+  body.can_move = can_move(scene, index);
   for (const Part& part : description.parts)
     for (const Vector3d& v : part.mesh.vertices) body.bounds_B.include(v);
   const CouplingLimits limits{p.max_stiffness, p.max_angular_stiffness, p.max_coupling_force, p.max_coupling_torque};
@@ -146,6 +188,7 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
               .hands = {},
               .companions = scene.companions,
               .clocks = Clocks(scene.parameters.timestep)};
+  choose_method(scene, world, events);
   choose_integrator(scene, world, events);
   check_gravity(world.parameters, events);
   check_names(scene);

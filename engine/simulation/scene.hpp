@@ -33,6 +33,9 @@ struct SimulationParameters {
   double frame_rate = 60;          ///< Hz, of the script's frames
   Integrator integrator = Integrator::semi_implicit;
   Hybrid hybrid = hybrid::restore;  ///< where both bodies have b-reps; of two that differ the lesser acts
+  /// Nobody named a method, or an integrator: where `exact` can act, it does, and its steps are implicit
+  /// (make_world.cpp). A scenario's default; a Scene that is made here names both.
+  bool hybrid_by_default = false, integrator_by_default = false;
   ContactMethod contact = ContactMethod::voxmap;
   AlignmentMeasure alignment = AlignmentMeasure::by_type;
   Reduction reduction = Reduction::common_freedom;
@@ -50,7 +53,9 @@ struct SimulationParameters {
   double exact_stiffness = 1.15e11;
   double restitution = 0;
   double restitution_speed = 0.01;
-  bool passive_contacts = true;  ///< contacts that `restore` or `blend` changed give no more energy than they got
+  /// Voxels' contacts give back what they were given: their springs begin where they began (contact/collision_link.hpp),
+  /// and what `restore` or `blend` changed is bounded (stages/passivity.hpp). False: depths act as the voxels give them.
+  bool passive_contacts = true;
 };
 
 struct BodyDescription {

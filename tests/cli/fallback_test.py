@@ -230,7 +230,7 @@ class Weight(ProgramTest):
     def test_a_part_that_is_too_heavy_for_its_contacts_is_a_warning(self):
         script = """
             defineSimulationParameters{ gravity = {0, 0, -9.81}, allBodiesAreDynamic = true, duration = 0.5,
-                                        contactStiffness = STIFFNESS }
+                                        hybrid = "restore", contactStiffness = STIFFNESS }
             addObject{ name = "plate", fixed = true, voxelsize = 0.005, Solid.box{0.3, 0.3, 0.02} }
             addObject{ name = "block", density = 7800, voxelsize = 0.005, position = {0, 0, 0.045},
                        Solid.box{0.06, 0.06, 0.06} }"""

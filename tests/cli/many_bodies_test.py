@@ -151,6 +151,7 @@ class FormatOne(ProgramTest):
     def test_told_of_pairs_of_which_one_body_has_no_b_rep_and_of_no_others(self):
         self.write("bush.stl", turned_stl(inner=10, outer=16, height=20))
         script = """
+            defineSimulationParameters{ hybrid = "restore" }
             addObject{ name = "bush", fixed = true, voxelsize = mm(1), Model{ "bush.stl", scale = 0.001 } }
             local rod = addObject{ name = "rod", voxelsize = mm(1), position = {0, 0, 0.02}, brep = BREP,
                                    Solid.cylinder{radius = 0.0098, height = 0.06} }

@@ -35,7 +35,7 @@ class PreciseScenes(ProgramTest):
         """Free spin (ORACLES section 2), in one scene under both: turned against the grid, 50 um of clearance."""
         scenario = self.write("coaxial.lua", """
             local p = params{ hybrid = "off", height = 0.05 }
-            defineSimulationParameters{ hybrid = p.hybrid, integrator = "implicit", duration = 0.001,
+            defineSimulationParameters{ hybrid = p.hybrid, integrator = "implicit", duration = 0.001, passiveContacts = false,
                                         allBodiesAreDynamic = true }
             addObject{ name = "block", fixed = true, voxelsize = mm(4.5), density = 7800,
                        Solid.box{0.375, 0.375, 0.2} - Solid.cylinder{radius = mm(75), height = 0.2} }

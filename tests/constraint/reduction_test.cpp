@@ -35,6 +35,19 @@ TEST(CommonFreedom, OfTwoWallsIsTheirEdge) {
   EXPECT_LE((restore_both(x, y, kF) - Vector3d(1, 2, 0)).norm(), tolerance(1e-15));
 }
 
+// A plate thinner than a voxel: two faces that push opposite ways stand in one voxel. Each push is kept, in either
+// order.
+TEST(CommonFreedom, OfAThinPlateKeepsThePushOfEitherFace) {
+  const auto top = flat(-Vector3d::UnitZ(), 1, true);
+  const auto bottom = flat(Vector3d::UnitZ(), 1, true);
+  for (const double z : {3.0, -3.0}) {
+    const Vector3d f(1, 2, z);
+    EXPECT_LE((restore_both(top, bottom, f) - Vector3d(0, 0, z)).norm(), tolerance(1e-15));
+    EXPECT_LE((restore_both(bottom, top, f) - Vector3d(0, 0, z)).norm(), tolerance(1e-15));
+  }
+  EXPECT_LE(restore_both(top, top, -kF).norm(), tolerance(1e-15)) << "one face pushes one way";
+}
+
 TEST(CommonFreedom, OfThreeWallsIsNothing) {
   const auto x = flat(Vector3d::UnitX(), 1);
   const auto y = flat(Vector3d::UnitY(), 1);

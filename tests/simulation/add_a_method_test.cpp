@@ -7,13 +7,9 @@
 namespace verisim::add_a_method_test {
 namespace {
 
-/// Leaves half of every force, and of every normal in implicit steps: half of its direction's force is gone as well.
+/// Leaves half of every force of explicit steps.
 class HalfPair final : public PairMethod {
  public:
-  bool act_on_normals(ContactList& contacts, const Pose& /*X_AB*/) override {
-    for (auto* column : {&contacts.nx, &contacts.ny, &contacts.nz}) halve(*column, contacts.size);
-    return true;
-  }
   void act_on_forces(ContactList& contacts, const Pose& /*X_AB*/) override {
     for (auto* column : {&contacts.fx, &contacts.fy, &contacts.fz}) halve(*column, contacts.size);
   }
@@ -35,6 +31,7 @@ class Half final : public HybridMethod {
 /// The first contact of a pin that a hand pushes against the wall.
 Vector3d first_force(Hybrid of_block, Hybrid of_pin, bool enabled = true) {
   Scene scene = scenes::brep_pin_in_hole(of_pin);
+  scene.parameters.passive_contacts = false;  // the whole depth acts at once
   scene.bodies[0].hybrid = of_block;
   scene.bodies[0].hybrid_enabled = enabled;
   Simulation simulation(scene, {});

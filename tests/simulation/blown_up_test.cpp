@@ -2,6 +2,8 @@
 // which nobody gave them (stages/tunnelling.hpp, stages/pair_energy.hpp).
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/simulation/hybrid_scenes.hpp"
 
 namespace verisim::blown_up_test {
@@ -67,6 +69,7 @@ Scene overlapping(double depth, Integrator integrator) {
   Scene scene = scenes::falling_boxes(1, integrator);
   scene.bodies[1].X_WB.position = {0, 0, 0.04 - depth};
   scene.parameters.duration = 0.1;
+  scene.parameters.passive_contacts = false;
   return scene;
 }
 
@@ -79,11 +82,28 @@ TEST(CreatedEnergy, IsToldOnceWithThePair) {
   }
 }
 
+// The same with springs that begin where contacts begin: it stays where it was put.
+TEST(CreatedEnergy, IsNotOfSpringsThatBeginWhereContactsBegin) {
+  for (const Integrator integrator : {Integrator::semi_implicit, Integrator::implicit}) {
+    Scene scene = overlapping(0.008, integrator);
+    scene.parameters.passive_contacts = true;
+    EXPECT_TRUE(events_of(scene, "energy").empty());
+    Simulation simulation(scene, {});
+    const double start = simulation.body_pose(1).position.z();
+    while (simulation.frame() < simulation.frames_planned()) simulation.step();
+    EXPECT_LE(std::abs(simulation.body_pose(1).position.z() - start), 1e-3);
+  }
+}
+
 // A voxel contact that begins deep in one step: fast against a hard surface, without damping.
 TEST(CreatedEnergy, IsToldOfAVoxelThatIsEnteredAtOnce) {
   Scene scene = scenes::brep_pin_in_hole(hybrid::off);
   scene.parameters.contact_damping_ratio = 0;
+  scene.parameters.passive_contacts = false;
   EXPECT_EQ(events_of(scene, "energy").size(), 1U);
+  scene.parameters.passive_contacts = true;
+  scene.devices = {scenes::hand_of_brep_pin()};  // a hand remembers
+  EXPECT_TRUE(events_of(scene, "energy").empty()) << "springs begin where contacts begin";
 }
 
 // Springs that give back what they were given create nothing: a box that falls, is thrown back and falls again.

@@ -27,6 +27,7 @@ class PinAt {
   static Scene left_alone(Hybrid hybrid, double voxel) {
     Scene scene = scenes::brep_pin_in_hole(hybrid, voxel);
     scene.grasps.clear();
+    scene.parameters.passive_contacts = false;               // it is put there, and did not come
     scene.devices = {scenes::hand_along({{1, 0, 1}}, 0.5)};  // out of reach: nobody holds the pin
     return scene;
   }

@@ -36,18 +36,25 @@ class BlendPair final : public PairMethod {
     const RigidBody& points = pair_.points().rigid;
     const Vector3d center_B = points.pose().inverse() * points.p_WC;
     const ConstraintForce pull = constraint_force(sets_.engaged(), X_AB, center_B, spring_);
+    const double alpha = is_pulled() ? pull.alpha : 0;
     const Matrix3d R_WA = map.R_WB.toRotationMatrix();
     const Wrench pull_W{R_WA * pull.on_b.force, R_WA * pull.on_b.torque};
-    on_points.wrench = blended(on_points.wrench, pull_W, pull.alpha);
+    on_points.wrench = blended(on_points.wrench, pull_W, alpha);
     on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
     for (LinkSide* side : {&on_map, &on_points}) {  // the collision's part of what an implicit step is told
-      side->stiffness *= 1 - pull.alpha;
-      side->damping *= 1 - pull.alpha;
-      side->drift *= 1 - pull.alpha;
+      side->stiffness *= 1 - alpha;
+      side->damping *= 1 - alpha;
+      side->drift *= 1 - alpha;
     }
   }
 
  private:
+  /// The pull is a hand's, and as weak: it cannot hold up what falls, nor stop what flies. @returns whether one of the
+  /// bodies is held, or none of them moves
+  [[nodiscard]] bool is_pulled() const {
+    return !pair_.parameters.all_bodies_are_dynamic || pair_.map().held_by != kNone || pair_.points().held_by != kNone;
+  }
+
   Pair pair_;
   SetLookUp sets_;
   BlendParameters spring_;

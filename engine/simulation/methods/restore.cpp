@@ -1,8 +1,9 @@
 // `restore`: degree-of-freedom restoration (dissertation section 8.4.2). Each contact's force, before the sum, loses
 // what opposes a motion that a recognized constraint leaves free.
 //
-// An implicit step needs the matrices of restored contacts, so it restores their normals before anything is computed
-// from them. An explicit one needs forces alone, and its stiffness stays that of the voxels' contacts.
+// A contact's force is a strength times its normal, and restoration is linear in the force: so the normals are
+// restored, before anything is computed from them. Spring, damper, matrices and forces are then all of the same
+// direction, and what a contact gives back is what it was given.
 #include "engine/simulation/methods/set_look_up.hpp"
 
 namespace verisim {
@@ -15,10 +16,6 @@ class RestorePair final : public PairMethod {
     const bool any = sets_.restore_normals(contacts, X_AB);
     look_ups_ = sets_.look_ups();
     return any;
-  }
-  void act_on_forces(ContactList& contacts, const Pose& X_AB) override {
-    sets_.restore_forces(contacts, X_AB);
-    look_ups_ = sets_.look_ups();
   }
 
  private:

@@ -71,24 +71,15 @@ void SetLookUp::note(const RestoreResult& result) {
   counted_ = counts;
 }
 
-bool SetLookUp::restore(ContactList& contacts, const Pose& X_AB, std::vector<float>& x, std::vector<float>& y,
-                        std::vector<float>& z) {
+bool SetLookUp::restore_normals(ContactList& contacts, const Pose& X_AB) {
   constraints_.begin_frame(X_AB);
   ContactColumns columns = columns_of(contacts);
-  columns.fx = x.data();
-  columns.fy = y.data();
-  columns.fz = z.data();
+  columns.fx = contacts.nx.data();
+  columns.fy = contacts.ny.data();
+  columns.fz = contacts.nz.data();
   const RestoreResult result = constraints_.restore_contacts(columns);
   note(result);
   return result.restored > 0;
-}
-
-void SetLookUp::restore_forces(ContactList& contacts, const Pose& X_AB) {
-  restore(contacts, X_AB, contacts.fx, contacts.fy, contacts.fz);
-}
-
-bool SetLookUp::restore_normals(ContactList& contacts, const Pose& X_AB) {
-  return restore(contacts, X_AB, contacts.nx, contacts.ny, contacts.nz);
 }
 
 void SetLookUp::look_up(const ContactList& contacts, const Pose& X_AB) {

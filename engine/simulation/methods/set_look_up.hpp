@@ -21,12 +21,10 @@ class SetLookUp {
  public:
   explicit SetLookUp(const Pair& pair);
 
-  /// Restores the contacts' forces in place.
-  void restore_forces(ContactList& contacts, const Pose& X_AB);
-  /// The same before there are forces: of each normal stays what the same restoration leaves of a force along it, and
-  /// so of unit length or shorter. The law is the same for a force of any size: what is computed from these normals
-  /// is restored. That holds for matrices too, and a damper along them leaves free what the constraint leaves free.
-  /// Returns whether a constraint holds anywhere: else the normals are the voxels'.
+  /// Restores the contacts' normals, before there are forces: of each stays what the restoration leaves of a force
+  /// along it, and so of unit length or shorter. The law is the same for a force of any size: what is computed from
+  /// these normals is restored. That holds for matrices too, and a damper along them leaves free what the constraint
+  /// leaves free. Returns whether a constraint holds anywhere: else the normals are the voxels'.
   bool restore_normals(ContactList& contacts, const Pose& X_AB);
   /// Looks all contacts up and leaves them as they are.
   void look_up(const ContactList& contacts, const Pose& X_AB);
@@ -38,8 +36,6 @@ class SetLookUp {
 
  private:
   [[nodiscard]] ContactColumns columns_of(const ContactList& contacts);
-  bool restore(ContactList& contacts, const Pose& X_AB, std::vector<float>& x, std::vector<float>& y,
-               std::vector<float>& z);
   void note(const RestoreResult& result);
 
   const VoxelBody* map_;

@@ -90,14 +90,15 @@ void Response::respond(const World& world, std::size_t l, const Contacts& contac
   LinkSides& sides = sides_[l];
   const SimulationParameters& p = world.parameters;
   const bool at_start = is_explicit(world, l);
-  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start};
+  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start, p.passive_contacts};
   if (method == nullptr) {
     link.respond(first, second, penalty, world.dt);
     link.sum_up(first, second, !at_start, sides);
     return;
   }
   const Pose X_AB = contacts.X_AB(world, l);
-  if (!at_start && method->act_on_normals(link.contacts(), X_AB)) {
+  const bool changed = method->act_on_normals(link.contacts(), X_AB);
+  if (!at_start && changed) {
     link.respond_at_once(first, second, penalty, world.dt, sides);
   } else {
     link.respond(first, second, penalty, world.dt);
