@@ -9,9 +9,9 @@
 // is a step deep at once, and where normals turn from voxel to voxel the depth of a point that slides goes up and down
 // as a saw. A force of such a depth belongs to no potential: it throws what touches, and nothing comes to rest. So the
 // spring of a point is pressed by what the point has come inwards along its contact's normal since it touched (in the
-// first frame: in that frame), and never by more than the depth (PenaltyParameters::from_touch). It gives back what it was given. Where the stability
-// rule changes the stiffness, the springs keep their forces. Reported depths are those of the places. Contacts of
-// triangles (find_by_triangles) have no memory: their depths are of a continuous surface.
+// first frame: in that frame), and never by more than the depth (PenaltyParameters::from_touch). It gives back what it
+// was given. Where the stability rule changes the stiffness, the springs keep their forces. Reported depths are those
+// of the places. Contacts of triangles (find_by_triangles) have no memory: their depths are of a continuous surface.
 #pragma once
 
 #include <cstdint>

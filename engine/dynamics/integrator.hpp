@@ -120,8 +120,8 @@ struct ImplicitStep {
   bool with_mutual = false;                                       ///< loads.contact_mutual is in b
 };
 [[nodiscard]] ImplicitStep begin_implicit(const RigidBody& body, const Loads& loads, double dt);
-/// Moves the body; it ends with velocity u1. @param solved  wrench of the contacts solved in between: dt solved = A u1 -
-/// b  @param during  velocity with which it moves, if that is another than u1: it was hit within the step
+/// Moves the body; it ends with velocity u1. @param solved  wrench of the contacts solved in between: dt solved = A u1
+/// - b  @param during  velocity with which it moves, if that is another than u1: it was hit within the step
 /// @pre `step` comes from begin_implicit
 [[nodiscard]] StepWork end_implicit(RigidBody& body, const Loads& loads, const ImplicitStep& step, const Vector6d& u1,
                                     const Wrench& solved, double dt, const Vector6d* during = nullptr);

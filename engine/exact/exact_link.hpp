@@ -5,11 +5,13 @@
 // The features of either body (exact_body.hpp) are tested against the faces of the other.
 //   Closest place   Newton's method moves a sample to the place of its segment that is closest to the face.
 //   Gap and normal  are those of the precise surface, less the radius of the feature's ball.
-//   Trim            A place whose foot is beyond the border of a face gives no row with it.
+//   Trim            A place whose foot is beyond the border of a face gives no row with it, unless it comes onto the
+//                   face within the step.
 //   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
 //                   larger distance owns the place. If the sample's segment crosses from one face to the other, the
-//                   row is that of edge against edge, with the normal perpendicular to both. At a concave edge each
-//                   face has its row, so the smaller distance counts.
+//                   row is that of edge against edge, with the normal perpendicular to both; it crosses now or, where
+//                   it does not yet, after the step. At a concave edge each face has its row, so the smaller distance
+//                   counts.
 //                   A face owns only what it can push: where its normal, and that of edge against edge, is outside of
 //                   the mover's normal cone, the place stays with the face across. So a rim that lies on an edge, or
 //                   comes down on it, is held by the one face that can hold it.
@@ -21,6 +23,9 @@
 //   Reduction       A group of segments has one row, at its closest place at the end of the step. A coincident group
 //                   has rows at its ends too. If the closest place has little weight, the candidate of the largest
 //                   weight has a row too.
+//   Hollows         A rim that slides round within a hollow has the row of its closest place alone: one beside it would
+//                   brake. Where the hollow is hardly wider, the closest place passes much of it within a step: all of
+//                   the rim's groups have rows, and a ball has rows all round (conforming_normals.hpp).
 //   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25
 //                   to 40 degrees.
 // A row first appears with a gap of the margin or more and so without force, except for those of a group's ends.
@@ -65,8 +70,7 @@ struct SearchThresholds {
   double end_apart = 0.25;  ///< of a group's length: an end that is nearer to the closest place needs no row of its own
   double lead_enough =
       1;  ///< times its change to the next sample: by so much another face has to own a sample to cull it
-  /// rad: where the closest place passes less of a curve within a step, one row is enough for it.
-  double conforms = 0.1;
+  double conforms = 0.1;  ///< rad: a hollow of which the closest place passes less within a step needs one row
   /// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
   /// useful normal.
   double blade = 0.1;
@@ -93,7 +97,7 @@ class ExactLink {
   void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
 
   [[nodiscard]] const RowList& rows() const { return rows_; }
-  void make_room() { rows_.make_room(); }  ///< for more rows than the last find; between steps
+  void make_room() { rows_.make_room(); }                         ///< for more rows than the last find; between steps
   [[nodiscard]] const SearchCost& cost() const { return cost_; }  ///< of the last find
   [[nodiscard]] double depth_max() const { return depth_max_; }   ///< m, deepest overlap at the start of the step
 

@@ -47,14 +47,15 @@ struct SimulationParameters {
   double contact_stiffness = 10000;     ///< N/m per contact, before the stability rule (contact/penalty.hpp)
   double contact_damping_ratio = 0.5;   ///< of the critical damping of the contact stiffness in force
   // Of contacts between precise surfaces (`exact`). Stiffness: N/m per m of an edge; half of E / (1 - nu^2) of steel on
-  // steel by default (engine/exact/exact_body.hpp). Restitution: speed of rebound by speed of approach, 0 (inelastic) to
-  // 1; slower approaches than restitution_speed [m/s] are inelastic, so that what bounces comes to rest
+  // steel by default (engine/exact/exact_body.hpp). Restitution: speed of rebound by speed of approach, 0 (inelastic)
+  // to 1; slower approaches than restitution_speed [m/s] are inelastic, so that what bounces comes to rest
   // (engine/exact/convex_step.hpp).
   double exact_stiffness = 1.15e11;
   double restitution = 0;
   double restitution_speed = 0.01;
-  /// Voxels' contacts give back what they were given: their springs begin where they began (contact/collision_link.hpp),
-  /// and what `restore` or `blend` changed is bounded (stages/passivity.hpp). False: depths act as the voxels give them.
+  /// Voxels' contacts give back what they were given: their springs begin where they began
+  /// (contact/collision_link.hpp), and what `restore` or `blend` changed is bounded (stages/passivity.hpp). False:
+  /// depths act as the voxels give them.
   bool passive_contacts = true;
 };
 

@@ -10,9 +10,8 @@ void Motion::advance(World& world, const Response& response, const ExactResponse
     Body& body = world.bodies[i];
     if (!world.moves(body)) continue;
     const Loads& loads = response.loads(i);
-    work_[i] = exact.solved(i)
-                   ? end_implicit(body.rigid, loads, exact.step(i), exact.velocity_after(i), exact.wrench(i), world.dt,
-                                  &exact.velocity(i))
+    work_[i] = exact.solved(i)       ? end_implicit(body.rigid, loads, exact.step(i), exact.velocity_after(i),
+                                                    exact.wrench(i), world.dt, &exact.velocity(i))
                : world.is_implicit() ? step_implicit(body.rigid, loads, world.dt, passivity.scale(i))
                                      : step_semi_implicit(body.rigid, loads, world.dt, passivity.scale(i));
     if (!body.rigid.is_finite())

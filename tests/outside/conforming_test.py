@@ -1,0 +1,107 @@
+"""Precise contacts of surfaces that fit each other closely: they rest, keep the speed of what slides, and let in what fits.
+
+Judged from recorded poses and forces. VERISIM_LONG_TESTS=1: more clearances, sizes of voxels and sections.
+"""
+import math
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+VERISIM = os.environ["VERISIM"]
+HERE = os.path.dirname(os.path.abspath(__file__))
+LONG = os.environ.get("VERISIM_LONG_TESTS") == "1"
+DENSITY = 2000
+BALL, PIN = 4 / 3 * math.pi * 0.01**3, math.pi * 0.01**2 * 0.04  # m^3
+PLUG = math.pi / 3 * 0.025 * (0.0075**2 + 0.0075 * 0.0125 + 0.0125**2)
+VOLUME = {"tube": BALL, "socket": BALL, "cone": BALL, "bore": PIN, "plug": PLUG}
+
+
+class ConformingTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_scene(self, scene, body, **settings):
+        """Poses, velocities and contact forces of a body, one row per frame."""
+        out = os.path.join(self.folder, "run.h5")
+        command = [VERISIM, "run", os.path.join(HERE, scene), "--quiet", "--force", "-o", out]
+        for name, value in settings.items():
+            command += ["--set", "{}={}".format(name, value if isinstance(value, str) else repr(float(value)))]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with h5py.File(out) as f:
+            folder = f["state/body/" + body]
+            return folder["pose"][:], folder["twist"][:], folder["force"][:, :3]
+
+    def check_rest(self, kind, clearance):
+        # Let go where it can rest, but for a small part of the clearance.
+        near = max(clearance, 1e-6)
+        pose, _, force = self.run_scene("conforming.lua", "body", kind=kind, clearance=clearance, drop=0.05 * near,
+                                        side=0.02 * near)
+        weight = DENSITY * VOLUME[kind] * 9.81
+        late = force[500:]
+        self.assertLessEqual(abs(late[:, 2].mean() - weight), 1e-3 * weight)
+        sideways = np.sqrt((late[:, :2] ** 2).sum(axis=1).mean())
+        self.assertLessEqual(sideways, 0.01 * weight)
+        deep = max(0.01 * clearance, 1e-7)
+        self.assertLessEqual(self.overlap(kind, clearance, pose[500:]).max(), deep)
+
+    @staticmethod
+    def overlap(kind, clearance, pose):
+        """How far the body is in its seat, from its place alone (it turns, if at all, about its own axes)."""
+        y, z = pose[:, 1], pose[:, 2]
+        if kind in ("tube", "bore"):
+            return np.hypot(y, z) - clearance
+        if kind == "socket":
+            return np.linalg.norm(pose[:, :3], axis=1) - clearance
+        if kind == "cone":  # to the side of a cone of half angle atan(1 / 2), its tip at z = -0.024
+            rho = np.hypot(pose[:, 0], y)
+            return 0.01 - ((z + 0.024) / math.sqrt(5) - rho * 2 / math.sqrt(5))
+        return np.hypot(pose[:, 0], y) * 0.98 - z * 0.2  # a plug of slope 1 / 5: to first order
+
+    def test_what_fits_closely_rests(self):
+        clearances = (0, 1e-6, 1e-5, 3e-5) if LONG else (0, 1e-5)
+        for kind in ("tube", "socket", "bore"):
+            for clearance in clearances:
+                with self.subTest(kind=kind, clearance=clearance):
+                    self.check_rest(kind, clearance)
+        for kind in ("cone", "plug"):
+            with self.subTest(kind=kind):
+                self.check_rest(kind, 0)
+
+    def test_a_ball_pressed_into_a_cone_does_not_buzz(self):
+        _, _, force = self.run_scene("press_buzz.lua", "tool", wall="cone", hybrid="exact", integrator="implicit")
+        late = force[800:]
+        # 300 N/m of the coupling and 400 N/m of the hand in series over 10 mm.
+        self.assertAlmostEqual(abs(late[:, 2].mean()), 12 / 7, delta=1e-3)
+        self.assertLessEqual(np.abs(np.diff(late, axis=0)).max(), 0.001)
+
+    def test_a_puck_that_slides_round_a_hole_keeps_its_speed_and_does_not_spin(self):
+        for voxelsize in (0.004, 0.002, 0.001) if LONG else (0.004, 0.001):
+            with self.subTest(voxelsize=voxelsize):
+                pose, twist, _ = self.run_scene("resting_kinds.lua", "b", kind="puck", hybrid="exact", integrator="implicit",
+                                                R=0.1, r=0.02, h0=0, start=1, g=0, duration=5, voxelsize=voxelsize)
+                self.assertLessEqual(np.abs(np.linalg.norm(twist[:, :3], axis=1) - 1).max(), 1e-3)
+                self.assertLessEqual(np.abs(twist[:, 3:]).max(), 0.1)
+                # A step along the wall ends (v dt)^2 / 2 (R - r) deep.
+                self.assertLessEqual((np.hypot(pose[:, 0], pose[:, 1]) - 0.08).max(), 1.01 * 1e-6 / 0.16)
+
+    def test_sections_with_bands_enter_their_holes_without_blows(self):
+        kinds = ("oct", "hex", "square", "tri") if LONG else ("oct", "square")
+        for c in (5e-6, 2e-5, 1e-4) if LONG else (2e-5,):
+            _, _, force = self.run_scene("entry.lua", "peg", kind="round", c=c)
+            of_pin = np.linalg.norm(force, axis=1).max()
+            for kind in kinds:
+                with self.subTest(kind=kind, c=c):
+                    pose, _, force = self.run_scene("entry.lua", "peg", kind=kind, c=c)
+                    self.assertLess(pose[-1, 2], 0.012, "it goes in")
+                    self.assertLessEqual(np.linalg.norm(force, axis=1).max(), 2 * of_pin)
+
+
+if __name__ == "__main__":
+    unittest.main()
