@@ -66,6 +66,13 @@ class Reach {
 
 }  // namespace
 
+bool will_be_exact(const BodyDescription& body, Hybrid method) {
+  if (!method->needs_precise_surfaces() || !body.use_brep) return false;
+  const auto is_known = [](const Face& face) { return !std::holds_alternative<OtherSurface>(face.surface); };
+  return std::any_of(body.parts.begin(), body.parts.end(),
+                     [&](const Part& part) { return std::any_of(part.faces.begin(), part.faces.end(), is_known); });
+}
+
 void BodyMaker::begin(World& world) {
   const Reach reach(world);
   for (std::size_t i = 0; i < bodies_.size(); ++i)

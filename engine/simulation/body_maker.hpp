@@ -9,6 +9,9 @@
 
 namespace verisim {
 
+/// Will precise surfaces be made of it, under this method?
+[[nodiscard]] bool will_be_exact(const BodyDescription& body, Hybrid method);
+
 class BodyMaker {
  public:
   /// `threads`: same bits for any number.

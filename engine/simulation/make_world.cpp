@@ -6,6 +6,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/exact/convex_step.hpp"
 #include "engine/geometry/merged.hpp"
 #include "engine/simulation/body_maker.hpp"
 #include "engine/simulation/hybrid_method.hpp"
