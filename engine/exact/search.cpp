@@ -181,6 +181,9 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   const auto tilt = [&](const Vector3d& omega) { return motion.dt * (omega - omega.dot(axis) * axis).norm(); };
   const double tilts = motion.thresholds.coincident / placed.feature->half_length +
                        std::max(tilt(motion.free_twist.angular), tilt(motion.last_twist.angular));
+  constexpr double kGain =
+      1e-9;  // m, above that of closest_place: at the limit of two segments one of them has the row
+  if (here.slope * here.slope < 2 * kGain * here.bend) return false;
   return passes < motion.thresholds.conforms && std::abs(here.slope) / length > tilts;
 }
 

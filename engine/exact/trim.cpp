@@ -151,6 +151,36 @@ class TrianglePlaces {
   Visit visit_;
 };
 
+/// What a face covers of its chart, and how far it reaches from the axis [m].
+struct Extent {
+  Chart low{1e300, 1e300};
+  Chart high{-1e300, -1e300};
+  double widest;
+};
+
+Extent extent_of(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+                 std::span<const Trim::Border> borders) {
+  Extent extent{.widest = surface.meridian().radius};
+  const auto include = [&](const Vector3d& p) {
+    const Chart c = surface.chart(p);
+    for (std::size_t i = 0; i < 2; ++i) {
+      extent.low[i] = std::min(extent.low[i], c[i]);
+      extent.high[i] = std::max(extent.high[i], c[i]);
+    }
+    extent.widest = std::max(extent.widest, distance_from_axis(surface, p));
+  };
+  for (const std::uint32_t t : triangles)
+    for (const std::uint32_t v : mesh.triangles[t]) include(mesh.vertices[v]);
+  for (const Trim::Border& border : borders)
+    for (const Vector3d& p : border.points) include(p);
+  if (surface.kind() == SurfaceKind::sphere) {
+    const auto [south, north] = poles_within(surface, mesh, triangles);
+    if (south) extent.low[1] = -1;
+    if (north) extent.high[1] = 1;
+  }
+  return extent;
+}
+
 }  // namespace
 
 int Trim::Axis::index(double x) const {
@@ -181,36 +211,17 @@ int Trim::cell_at(const std::array<double, 2>& chart) const {
 Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
            std::span<const Border> borders, const Cells& cells) {
   const double cell = cells.size;
-  // The chart's extent.
-  Chart low{1e300, 1e300};
-  Chart high{-1e300, -1e300};
-  double widest = surface.meridian().radius;
-  const auto include = [&](const Vector3d& p) {
-    const Chart c = surface.chart(p);
-    for (std::size_t i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], c[i]);
-      high[i] = std::max(high[i], c[i]);
-    }
-    widest = std::max(widest, distance_from_axis(surface, p));
-  };
-  for (const std::uint32_t t : triangles)
-    for (const std::uint32_t v : mesh.triangles[t]) include(mesh.vertices[v]);
-  for (const Border& border : borders)
-    for (const Vector3d& p : border.points) include(p);
+  const Extent extent = extent_of(surface, mesh, triangles, borders);
+  const Chart& low = extent.low;
+  const Chart& high = extent.high;
   const bool has_poles = surface.kind() == SurfaceKind::sphere;
-  if (has_poles) {
-    const auto [south, north] = poles_within(surface, mesh, triangles);
-    if (south) low[1] = -1;
-    if (north) high[1] = 1;
-  }
-
-  const Layout layout = layout_of(surface, widest);
+  const Layout layout = layout_of(surface, extent.widest);
   const auto make_axis = [&](bool around, double metres, double from, double to) {
     Axis axis;
     axis.around = around;
-    const double extent = around ? kTurn : to - from;
-    const int inner = static_cast<int>(std::clamp(std::ceil(extent * metres / cell), 1.0, double(cells.count_max)));
-    axis.cell = std::max(extent / inner, cell / metres * 0x1p-10);
+    const double span = around ? kTurn : to - from;
+    const int inner = static_cast<int>(std::clamp(std::ceil(span * metres / cell), 1.0, double(cells.count_max)));
+    axis.cell = std::max(span / inner, cell / metres * 0x1p-10);
     axis.count = around ? inner : inner + 2;  // a cell more on either side: near the border, but beyond it
     axis.from = around ? 0 : from - axis.cell;
     axis.per_cell = 1 / axis.cell;

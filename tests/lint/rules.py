@@ -115,7 +115,7 @@ KEPT_FOR_TESTS = {  # functions of the engine's headers that nothing in the engi
 LINES_OF_A_FILE = 500
 LINES_OF_A_SCREEN = 60
 LONGER_THAN_A_SCREEN = {  # may become shorter, never longer
-    "engine/exact/trim.cpp: Trim::Trim": 93,
+    "engine/exact/trim.cpp: Trim::Trim": 80,
     "engine/simulation/columns.cpp: Simulation::Implementation::make_schema": 63,
 }
 
