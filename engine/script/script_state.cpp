@@ -15,6 +15,12 @@ std::string file_name_of(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
+/// Every folder on the way to a file is looked at, 2 us each; a folder's name has at least two bytes.
+void charge_look_up(lua_State* L, const std::string& name) {
+  constexpr std::uint64_t kLookUp = 1000, kPerByte = 50;
+  Sandbox::charge(L, kLookUp + kPerByte * name.size());
+}
+
 }  // namespace
 
 ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenario_inputs)
@@ -39,10 +45,21 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
   add_drawing_words(L);
 }
 
+bool ScriptState::has_file(lua_State* L, const std::string& name) {
+  charge_look_up(L, name);
+  return inputs.exists(name);
+}
+
+const std::string& ScriptState::read_file(lua_State* L, const std::string& name) {
+  charge_look_up(L, name);
+  const std::string& content = inputs.read(name);
+  charge(L, content.size());
+  return content;
+}
+
 int ScriptState::run_file(lua_State* L, const std::string& file) {
   const int top = lua_gettop(L);
-  const std::string& content = inputs.read(file);
-  charge(L, content.size());
+  const std::string& content = read_file(L, file);
   if (const auto failure = load(L, file, content)) {
     // The message has the place already; raise_text would put another before it.
     push_text(L, failure->text);

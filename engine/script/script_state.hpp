@@ -58,6 +58,10 @@ class ScriptState : public Sandbox {
   ScriptState(const ScenarioOptions& options, Inputs& inputs);
   static ScriptState& of(lua_State* L) { return static_cast<ScriptState&>(Sandbox::of(L)); }
 
+  /// Is there such a file? A script pays for each look at the disk, found or not.
+  [[nodiscard]] bool has_file(lua_State* L, const std::string& name);
+  /// Its content. Error(input): no such file.
+  [[nodiscard]] const std::string& read_file(lua_State* L, const std::string& name);
   /// Runs a file of the scenario on L and leaves its results. Error(input): no such file. Lua errors pass through.
   int run_file(lua_State* L, const std::string& name);
   /// Once, after the script: unknown --set keys, --bind, devices, grasps; completes `scene`. Error(input).

@@ -62,7 +62,7 @@ int add_string(lua_State* L) {
 int add_file(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   const std::string name = text_at(L, 2, "runbuf:addFile: the file");
-  state.run_buffer.emplace_back(name, state.inputs.read(name));
+  state.run_buffer.emplace_back(name, state.read_file(L, name));
   state.keep(kNodeBytes + state.run_buffer.back().second.size());
   lua_pushboolean(L, 1);
   return 1;

@@ -20,10 +20,11 @@ std::string below(const std::string& folder, const std::string& name) {
 }
 
 /// The path of a script or model: as named, or in a folder of the search path. Empty if not found.
-std::string find_file(ScriptState& state, const std::string& name) {
-  if (state.inputs.exists(name)) return name;
+std::string find_file(lua_State* L, const std::string& name) {
+  ScriptState& state = ScriptState::of(L);
+  if (state.has_file(L, name)) return name;
   for (const std::string& folder : state.search_path)
-    if (state.inputs.exists(below(folder, name))) return below(folder, name);
+    if (state.has_file(L, below(folder, name))) return below(folder, name);
   return {};
 }
 
@@ -57,7 +58,7 @@ void append_folder(ScriptState& state, const std::string& folder) {
 int append_to_search_path(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   const std::string name = text_at(L, 1, "vrjLua.appendToModelSearchPath: the folder");
-  append_folder(state, state.inputs.exists(name) ? folder_of(name) : name);
+  append_folder(state, state.has_file(L, name) ? folder_of(name) : name);
   return 0;
 }
 
@@ -68,7 +69,7 @@ int search_path(lua_State* L) {
 
 int find_in_search_path(lua_State* L) {
   const std::string name = text_at(L, 1, "vrjLua.findInModelSearchPath: the file");
-  const std::string found = find_file(ScriptState::of(L), name);
+  const std::string found = find_file(L, name);
   push_text(L, found.empty() ? name : found);  // as it stands: whoever opens it says what is wrong with it
   return 1;
 }
@@ -81,8 +82,8 @@ int add_app_directory(lua_State* L) {
 int run_named_file(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   const std::string name = text_at(L, 1, "runfile: the file");
-  std::string found = find_file(state, name);
-  if (found.empty()) found = find_file(state, name + ".lua");
+  std::string found = find_file(L, name);
+  if (found.empty()) found = find_file(L, name + ".lua");
   if (found.empty()) raise(L, "Could not find {} in model search path to run!", name);
   state.print(fmt::format("Running {} - found at {}", name, found));
   return state.run_file(L, found);
@@ -108,7 +109,7 @@ int require_module(lua_State* L) {
   if (!lua_isnil(L, -1)) return 1;
   std::string file = name;
   std::replace(file.begin(), file.end(), '.', '/');
-  const std::string found = find_file(state, file + ".lua");
+  const std::string found = find_file(L, file + ".lua");
   if (found.empty())
     raise(L, "require: there is no module '{}': no {}.lua in the scenario's folder, and not one of {}", name, file,
           fmt::join(kOwnModules, ", "));

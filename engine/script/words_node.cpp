@@ -36,13 +36,13 @@ std::string find_model(lua_State* L, const std::string& given) {
   for (const std::string& folder : state.search_path) places.push_back(fmt::format("{}/{}", folder, name));
   for (const std::string& place : places) {
     if (readable(place)) {
-      if (state.inputs.exists(place)) return place;
+      if (state.has_file(L, place)) return place;
       continue;
     }
     const std::size_t dot = lower_extension(place).empty() ? place.size() : place.find_last_of('.');
     for (const char* extension : kReadable) {
       std::string sibling = fmt::format("{}.{}", place.substr(0, dot), extension);
-      if (!state.inputs.exists(sibling)) continue;
+      if (!state.has_file(L, sibling)) continue;
       state.notice(
           fmt::format("{}: {} is in a format that cannot be read; {} is read in its place", where(L), given, sibling));
       return sibling;

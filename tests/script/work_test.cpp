@@ -131,6 +131,41 @@ TEST(Work, NoFunctionTakesMuchLongerThanItsAllowance) {
   std::printf("slowest: %.3f s, %s\n", slowest_seconds, slowest.c_str());
 }
 
+// What is cheap to call may be called often: the whole allowance goes into one function, with simple arguments.
+TEST(Work, ManyCallsOfOneFunctionTakeNoLongerThanTheirAllowance) {
+  constexpr std::uint64_t kUnits = 500'000;
+  constexpr double kSecondsPerUnit = 20e-9, kTimes = test::kSanitized ? 100 : 10;
+  Worst worst;
+  ScriptState& state = worst.state();
+  lua_State* L = state.lua();
+  worst.run("for i = 1, 99 do vrjLua.appendToModelSearchPath('folder' .. i) end");
+  FunctionWalk walk(L);
+  walk.visit("sample");
+  lua_settop(L, 0);
+  std::string slowest;
+  double slowest_seconds = 0;
+  for (const ReachedFunction& function : walk.functions()) {
+    for (const char* arguments : {"", "1", "'none'", "'a/b/c/d/e/f/g/h', 'none'", "{}"}) {
+      lua_rawgeti(L, LUA_REGISTRYINDEX, function.reference);
+      lua_setglobal(L, "F");
+      state.allow(kUnits);
+      const double begin = processor_seconds();
+      auto failure = state.load(L, "loop.lua",
+                                fmt::format("local f, pcall = F, pcall for i = 1, 1e5 do pcall(f{}{}) end",
+                                            *arguments ? ", " : "", arguments));
+      if (!failure) failure = state.call(L, 0, 0);
+      const double seconds = processor_seconds() - begin;
+      lua_settop(L, 0);
+      EXPECT_LT(seconds, kTimes * kSecondsPerUnit * kUnits) << function.path << "(" << arguments << ")";
+      if (seconds > slowest_seconds) {
+        slowest_seconds = seconds;
+        slowest = fmt::format("{}({})", function.path, arguments);
+      }
+    }
+  }
+  std::printf("slowest: %.3f s, %s\n", slowest_seconds, slowest.c_str());
+}
+
 // --- what no function does: instructions and tables -----------------------------------------------------------------
 
 /// Spends an allowance of some 20 ms on `text`; processor time that it took.
