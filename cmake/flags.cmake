@@ -24,6 +24,9 @@ endif()
 add_library(verisim_flags INTERFACE)
 target_compile_options(verisim_flags INTERFACE -ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
 target_include_directories(verisim_flags INTERFACE ${PROJECT_SOURCE_DIR})
+# Small functions on small arrays (engine/exact): -O3 inlines them.
+add_library(verisim_small_arrays INTERFACE)
+target_compile_options(verisim_small_arrays INTERFACE -O3)
 # Among -Wall: -Wswitch. A switch over an enum class has no default, so that one that forgets a kind does not compile.
 option(VERISIM_WERROR "Treat warnings as errors" OFF)
 if(VERISIM_WERROR)

@@ -19,8 +19,7 @@
 //   - A row with e > 0 is hit if v is above the threshold speed and it does not overlap by more than a quarter of v dt.
 //     A body that lies has no speed of approach; one that slides along a curved path has, but overlaps by half of v dt.
 //   - A row that was open and closes only because of a blow is left out: the next step finds it hit. So a blow is
-//   handed on
-//     from body to body, one per step.
+//     handed on from body to body, one per step.
 //   - While it is hit a row is as stiff as rigid bodies: a blow is over within the step, whatever the stiffness.
 //   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
 //     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
