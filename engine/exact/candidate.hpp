@@ -59,13 +59,18 @@ struct BodyPair {
   [[nodiscard]] double normal_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
     return normal_cone_weight_in_mover(sample, motion.R.transpose() * normal);
   }
-  /// @param n  the normal in the mover's coordinates
-  [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n) const {
+  /// Likewise, of a normal of edge against edge.
+  [[nodiscard]] double edge_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
+    return normal_cone_weight_in_mover(sample, motion.R.transpose() * normal, motion.thresholds.cone_of_edges);
+  }
+  /// @param n      the normal in the mover's coordinates
+  /// @param scale  of cone_full and cone_none
+  [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n, double scale = 1) const {
     double outside = 0;  // sine of the angle out of the normal cone
     for (std::uint32_t i = mover.cone_begin[sample]; i < mover.cone_begin[sample + 1]; ++i)
       outside = std::max(outside, -n.dot(mover.cone_directions[i]));
     const SearchThresholds& fade = motion.thresholds;
-    return std::clamp((fade.cone_none - outside) / (fade.cone_none - fade.cone_full), 0.0, 1.0);
+    return std::clamp((fade.cone_none * scale - outside) / (scale * (fade.cone_none - fade.cone_full)), 0.0, 1.0);
   }
   /// Calls f(i, measure of sample i) for every sample of the block.
   template <typename F>

@@ -26,6 +26,8 @@ enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_m
 struct ComparedDistances {
   double mine, other;
 };
+[[nodiscard]] ComparedDistances compared_by(const BodyPair& pair, OwnershipRule rule, const Vector3d& p,
+                                            const SurfaceAt& mine, const SurfaceAt& other);
 [[nodiscard]] ComparedDistances compared_distances(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine,
                                                    const SurfaceAt& other);
 
@@ -36,8 +38,7 @@ struct ComparedDistances {
                               bool wins_tie);
 
 /// True if the candidate becomes a row against `face` of the base: its foot lies within the face's trim, and no sharp
-/// edge gives the point to another face. Where the sample's segment crosses a convex edge of the face, the candidate
-/// is changed into the contact of edge against edge. Sets the candidate's weight.
+/// edge gives the point to another face. Sets the candidate's weight.
 /// @pre place, point, gap and normal of `c` are those against `face`, which is one of the base's
 [[nodiscard]] bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face,
                                     Candidate& c);

@@ -101,16 +101,20 @@ class PartImporter {
   }
 
  private:
+  /// Adds how far a curve or round face may bulge out of the box of its points.
+  void add_sagitta(Bounds& bounds) const {
+    const Vector3d more = Vector3d::Constant(body_.options.sagitta * bounds.size().maxCoeff());
+    bounds.min -= more;
+    bounds.max += more;
+  }
+
   void add_surface(std::size_t f) {
     ExactFace& face = body_.faces.emplace_back();
     for (const std::uint32_t t : triangles_.of(f))
       for (const std::uint32_t v : part_.mesh.triangles[t]) face.bounds.include(part_.mesh.vertices[v]);
     if (triangles_.of(f).empty()) return;
     face.surface = AnalyticSurface::from(part_.faces[f]);
-    if (!face.surface || face.surface->kind() == SurfaceKind::plane) return;
-    const Vector3d more = Vector3d::Constant(body_.options.sagitta * face.bounds.size().maxCoeff());
-    face.bounds.min -= more;
-    face.bounds.max += more;
+    if (face.surface && face.surface->kind() != SurfaceKind::plane) add_sagitta(face.bounds);
   }
 
   [[nodiscard]] const AnalyticSurface* surface_of(std::uint32_t face) const {
@@ -143,6 +147,8 @@ class PartImporter {
       if (lies_towards(part_.mesh, triangles, points_[e][middle], outward(middle, side))) sign[side] = -1;
     }
     set_extent(made, edge);
+    for (const Vector3d& p : points_[e]) made.bounds.include(p);
+    if (made.extent != ExactEdge::Extent::line) add_sagitta(made.bounds);
     if (surface[0] != nullptr && surface[1] != nullptr) {
       const double turn = outward(middle, 0).dot(surface[1]->at(points_[e][middle]).normal);
       if (turn > body_.options.smooth) made.convexity = Convexity::convex;
@@ -221,6 +227,9 @@ ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : o
   std::vector<Bounds> boxes;
   for (const ExactFace& face : faces) boxes.push_back(face.surface ? face.bounds : Bounds());
   face_tree = BoxTree(boxes);
+  boxes.clear();
+  for (const ExactEdge& edge : edges) boxes.push_back(edge.convexity == Convexity::convex ? edge.bounds : Bounds());
+  edge_tree = BoxTree(boxes);
   boxes.clear();
   for (const SampleBlock& block : blocks) boxes.push_back(bounds_of(*this, block));
   block_tree = BoxTree(boxes);

@@ -83,6 +83,7 @@ struct ExactEdge {
     std::array<Vector3d, 2> outward;
   };
   std::vector<Mark> marks;
+  Bounds bounds;
 };
 
 struct ExactFace {
@@ -144,6 +145,7 @@ struct ExactBody {
   std::vector<Vector3d> cone_directions;  ///< unit
   std::vector<SampleBlock> blocks;
   BoxTree face_tree;   ///< over the faces with a surface
+  BoxTree edge_tree;   ///< over the convex edges
   BoxTree block_tree;  ///< over the blocks, their balls included
   std::size_t precise_face_count = 0;
 };

@@ -8,10 +8,11 @@
 //   Trim            A place whose foot is beyond the border of a face gives no row with it, unless it comes onto the
 //                   face within the step.
 //   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
-//                   larger distance owns the place. If the sample's segment crosses from one face to the other, the
-//                   row is that of edge against edge, with the normal perpendicular to both; it crosses now or, where
-//                   it does not yet, after the step. At a concave edge each face has its row, so the smaller distance
+//                   larger distance owns the place. At a concave edge each face has its row, so the smaller distance
 //                   counts.
+//   Edge and edge   The mover's curves are tested against the convex edges, too. Where a segment crosses from one face
+//                   of an edge to the other, there is a row with the normal perpendicular to both curves; it crosses
+//                   now or, where it does not yet, after the step (edge_crossing.hpp).
 //                   A face owns only what it can push: where its normal, and that of edge against edge, is outside of
 //                   the mover's normal cone, the place stays with the face across. So a rim that lies on an edge, or
 //                   comes down on it, is held by the one face that can hold it.
@@ -65,6 +66,9 @@ struct SearchThresholds {
   /// Sines of 25 and 40 degrees. A contact normal should lie in the mover's normal cone at the sample. Outside of it
   /// the contact's weight falls from 1 to 0 between these angles out of the cone: more than a body tilts in its fit.
   double cone_full = 0.42, cone_none = 0.64;
+  /// Of these, for edge against edge: beyond the cone one edge lies on the face behind the other, and the row is that
+  /// face's.
+  double cone_of_edges = 0.5;
   double touching = 1e-6;      ///< m: a part of a segment as near as this touches
   double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone
   double end_apart = 0.25;  ///< of a group's length: an end that is nearer to the closest place needs no row of its own

@@ -105,7 +105,7 @@ void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, con
   };
   const AnalyticSurface& across = *faces[face_across(*edge, face)].surface;
   const auto can_be_pushed = [&](std::uint32_t i) {
-    return gaps_ahead[i] == kOutOfReach || lead.other[i] >= -pair.motion.thresholds.coincident ||
+    return gaps_ahead[i] == kOutOfReach || lead.other[i] >= pair.motion.thresholds.coincident ||
            pair.normal_cone_weight(block.begin + i, across.at(place(i)).normal) >= 1;
   };
   const std::uint32_t group = placed.feature->group;

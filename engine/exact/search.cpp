@@ -1,6 +1,7 @@
 #include "engine/exact/search.hpp"
 
 #include "engine/exact/conforming_normals.hpp"
+#include "engine/exact/edge_crossing.hpp"
 #include "engine/exact/edge_ownership.hpp"
 #include "engine/exact/ownership_culling.hpp"
 
@@ -15,19 +16,24 @@ class Search {
   double run(NodePairs& stack);
 
  private:
+  template <typename Test>
+  void descend(const BoxTree& base, NodePairs& stack, Test&& test) const;
   void test_block(std::uint32_t block, std::uint32_t face);
+  void cross_block(std::uint32_t block, std::uint32_t edge);
+  [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b) const;
   void reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                     std::span<double> remaining, std::uint32_t face);
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
                                         Candidate& c);
+  [[nodiscard]] bool is_near(const PlacedFeature& placed, std::uint32_t count, Candidate& c) const;
   [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
                      std::uint32_t face);
-  void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
+  void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity);
 
   const BodyPair pair_;
   RowList& rows_;
@@ -35,12 +41,19 @@ class Search {
   double depth_max_ = 0;
 };
 
-/// Descends both trees; the order of the pairs does not depend on the poses.
 double Search::run(NodePairs& stack) {
+  descend(pair_.base.face_tree, stack, [&](std::uint32_t block, std::uint32_t face) { test_block(block, face); });
+  descend(pair_.base.edge_tree, stack, [&](std::uint32_t block, std::uint32_t edge) { cross_block(block, edge); });
+  return depth_max_;
+}
+
+/// Descends the mover's tree of blocks and one of the base's; the order of the pairs does not depend on the poses.
+template <typename Test>
+void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) const {
   const RelativeMotion& motion = pair_.motion;
   const auto& blocks = pair_.mover.block_tree.nodes;
-  const auto& faces = pair_.base.face_tree.nodes;
-  if (blocks.empty() || faces.empty()) return 0;
+  const auto& faces = base.nodes;
+  if (blocks.empty() || faces.empty()) return;
   stack.clear();
   stack.emplace_back(0, 0);
   while (!stack.empty()) {
@@ -53,7 +66,7 @@ double Search::run(NodePairs& stack) {
     const bool block_is_leaf = block.right == BoxTree::kLeaf;
     const bool face_is_leaf = face.right == BoxTree::kLeaf;
     if (block_is_leaf && face_is_leaf) {
-      test_block(block.left, face.left);
+      test(block.left, face.left);
     } else if (face_is_leaf || (!block_is_leaf && block.half.squaredNorm() > face.half.squaredNorm())) {
       stack.emplace_back(block.right, s);
       stack.emplace_back(block.left, s);
@@ -62,7 +75,6 @@ double Search::run(NodePairs& stack) {
       stack.emplace_back(g, face.left);
     }
   }
-  return depth_max_;
 }
 
 void Search::test_block(std::uint32_t r, std::uint32_t face) {
@@ -94,6 +106,56 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
     const std::uint32_t size = std::min(feature.group, count - i);
     reduce_group(placed, curve, block.begin + i, std::span(gaps_ahead).subspan(i, size), face);
   }
+}
+
+/// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step
+/// without contact.
+void Search::cross_block(std::uint32_t r, std::uint32_t e) {
+  const RelativeMotion& motion = pair_.motion;
+  const SampleBlock& block = pair_.mover.blocks[r];
+  const Feature& feature = pair_.mover.features[block.feature];
+  if (feature.own_face != kNoFace || feature.half_width == 0) return;
+  const ExactEdge& edge = pair_.base.edges[e];
+  const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
+                             motion.R * feature.y};
+  std::array<std::array<Measure, kBlockSize>, 2> measures;
+  const std::uint32_t count = block.end - block.begin;
+  for (std::size_t side = 0; side < 2; ++side)
+    pair_.measure_all(pair_.seen_from(*pair_.base.faces[edge.faces[side]].surface, placed, motion.free_twist), block,
+                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
+  cost_.samples += 2 * count;
+  for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
+    const std::uint32_t size = std::min(feature.group, count - begin);
+    Candidate best;
+    best.gap_ahead = kOutOfReach;
+    for (std::uint32_t i = begin; i < begin + size; ++i) {
+      if (!may_cross(feature, measures[0][i], measures[1][i])) continue;
+      Candidate c;
+      c.group = block.begin + begin;
+      c.sample = block.begin + i;
+      const auto near = [&](std::size_t side) {
+        return closest_place_to(pair_, *pair_.base.faces[edge.faces[side]].surface, placed, c.sample);
+      };
+      cost_.closest_places += 2;
+      if (!cross_edge(pair_, placed, edge, {near(0), near(1)}, c) || !is_near(placed, size, c)) continue;
+      c.weight *= pair_.edge_cone_weight(c.sample, c.normal);
+      if (c.gap_ahead < best.gap_ahead) best = c;
+    }
+    if (best.gap_ahead != kOutOfReach)
+      add_row(placed, best, size, static_cast<std::uint32_t>(pair_.base.faces.size()) + e);
+  }
+}
+
+/// False if a segment is out of reach of the faces of an edge, or one of them is farther all along it. Of its middle's
+/// distances.
+bool Search::may_cross(const Feature& feature, const Measure& a, const Measure& b) const {
+  const RelativeMotion& motion = pair_.motion;
+  const double half = feature.half_width;
+  if (std::max(nearest_of(a, half, 0), nearest_of(b, half, 0)) >= motion.margin) return false;
+  // A parabola's error is less than itself, and rules of motion compare what the step may change.
+  const double change = half * (std::abs(a.slope - b.slope) + half * (std::abs(a.bend) + std::abs(b.bend)));
+  const bool runs_along = change < motion.thresholds.coincident;
+  return !runs_along && std::abs(a.distance - b.distance) < 2 * (change + motion.margin);
 }
 
 /// Contact reduction: one row for a group of samples. Among the candidates that the face accepts it is the one with the
@@ -144,21 +206,27 @@ bool Search::evaluate_candidate(const PlacedFeature& placed, std::uint32_t face,
   c.p = placed.point(c.place);
   c.at = pair_.base.faces[face].surface->at(c.p);
   c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
-  // A segment that crosses an edge of the face may be a spacing deep behind it.
-  if (c.gap >= motion.margin || c.gap < -2 * pair_.base.options.spacing) return false;
+  if (c.gap >= motion.margin || c.gap < -pair_.base.options.spacing) return false;
   c.normal = c.at.normal;
-  if (!accept_candidate(pair_, placed, face, c)) return false;
+  if (!accept_candidate(pair_, placed, face, c) || !is_near(placed, count, c)) return false;
+  c.weight *= pair_.normal_cone_weight(c.sample, c.normal);
+  return true;
+}
+
+/// Computes what an accepted candidate's gap and weight say. False if they give no row.
+bool Search::is_near(const PlacedFeature& placed, std::uint32_t count, Candidate& c) const {
+  const RelativeMotion& motion = pair_.motion;
   if (c.gap >= motion.margin || c.gap < -pair_.base.options.spacing) return false;
   c.gap_ahead = c.gap + c.normal.dot(pair_.moved(c.p, motion.free_twist));
-  c.weight *= touching_fraction(placed, c, count) * pair_.normal_cone_weight(c.sample, c.normal);
+  c.weight *= touching_fraction(placed, c, count);
   return true;
 }
 
 /// Is the candidate's place the end of a segment beyond which the curve goes on?
 bool Search::is_between(const PlacedFeature& placed, const Candidate& c) const {
   const Feature& feature = *placed.feature;
-  return feature.own_face == kNoFace && c.edge_fraction == 0 && feature.half_width > 0 &&
-         std::abs(c.place.t) >= feature.half_width && feature.goes_on(c.sample, c.place.t);
+  return feature.own_face == kNoFace && feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width &&
+         feature.goes_on(c.sample, c.place.t);
 }
 
 /// True if the curve rolls round within a hollow face, its closest place lies in another segment, and by the end of the
@@ -251,7 +319,8 @@ bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) co
 }
 
 /// Adds the row of a candidate that stands for `count` segments.
-void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
+/// @param entity  of the base: a face's number, or an edge's beyond those of the faces
+void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity) {
   const RelativeMotion& motion = pair_.motion;
   const Feature& feature = *placed.feature;
   if (c.weight == 0) return;
@@ -259,8 +328,8 @@ void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint3
   const double stiffness = c.weight * (count * feature.stiffness + c.edge_fraction * point);
   const Vector3d normal = motion.R_WB * c.normal;
   const Vector3d place = motion.R_WB * (c.p - feature.radius_at(c.place.c) * c.normal) + motion.p_WB;
-  const auto faces = static_cast<std::uint32_t>(pair_.base.faces.size());
-  const std::uint32_t source = (c.group * faces + face) << 1 | static_cast<std::uint32_t>(motion.mover_is_second);
+  const auto entities = static_cast<std::uint32_t>(pair_.base.faces.size() + pair_.base.edges.size());
+  const std::uint32_t source = (c.group * entities + entity) << 1 | static_cast<std::uint32_t>(motion.mover_is_second);
   rows_.add({motion.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source});
   depth_max_ = std::max(depth_max_, -c.gap);
   ++cost_.rows;

@@ -1,0 +1,131 @@
+#include "engine/exact/edge_crossing.hpp"
+
+#include "engine/exact/edge_ownership.hpp"
+
+namespace verisim::exact {
+namespace {
+
+constexpr double kSameDistance =
+    1e-12;  // m, no heuristic but rounding, of two faces: a tenth of what double precision says of a body of metres
+
+/// The faces a and b of a convex edge, their distances compared by one rule, whatever the place.
+class ComparedFaces {
+ public:
+  ComparedFaces(const BodyPair& pair, std::uint32_t a, std::uint32_t b, OwnershipRule rule)
+      : pair_(pair), a_(a), b_(b), rule_(rule) {}
+
+  struct At {
+    SurfaceAt a, b;
+    double lead;  ///< m: by how much face a is compared as farther than face b; above 0 it owns the place
+  };
+  [[nodiscard]] At at(const Vector3d& p) const {
+    At at{surface(a_).at(p), surface(b_).at(p), 0};
+    const ComparedDistances compared = compared_by(pair_, rule_, p, at.a, at.b);
+    at.lead = compared.mine - compared.other;
+    return at;
+  }
+
+  /// True if a place of the edge, where both are compared as equally far, lies within either face and inside of every
+  /// third face that shares a convex edge with one of them.
+  [[nodiscard]] bool are_outermost(const Vector3d& p) const {
+    return is_outermost(p, a_, b_) && is_outermost(p, b_, a_);
+  }
+
+ private:
+  [[nodiscard]] const AnalyticSurface& surface(std::uint32_t face) const { return *pair_.base.faces[face].surface; }
+
+  [[nodiscard]] bool is_outermost(const Vector3d& p, std::uint32_t face, std::uint32_t other) const {
+    const SurfaceAt here = surface(face).at(p);
+    const Trim::Answer answer = pair_.base.faces[face].trim->find(surface(face), p - here.distance * here.normal);
+    for (const std::uint32_t e : answer.edges) {
+      const ExactEdge& edge = pair_.base.edges[e];
+      const std::uint32_t third = face_across(edge, face);
+      if (edge.convexity != Convexity::convex || third == other) continue;
+      const SurfaceAt there = surface(third).at(p);
+      const ComparedDistances compared = compared_by(pair_, rule_, p, here, there);
+      if (compared.other > compared.mine && edge.limits_face_at(face, p, there.distance)) return false;
+    }
+    return answer.where != Trim::Where::outside;
+  }
+
+  const BodyPair& pair_;
+  std::uint32_t a_, b_;
+  OwnershipRule rule_;
+};
+
+/// The crossing by one rule.
+bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
+                   const std::array<Place, 2>& near, Candidate& c) {
+  double t_a = near[0].t;  // here b owns the place
+  double t_b = near[1].t;  // here a should
+  double d_a = faces.at(placed.point(near[0])).lead;
+  double d_b = faces.at(placed.point(near[1])).lead;
+  if (!(d_a < 0 && d_b > 0)) return false;
+  ComparedFaces::At at{};
+  constexpr int kStepsMax = 30;          // a bound of the work: about six are needed
+  for (int i = 0; i < kStepsMax; ++i) {  // false position, with the Illinois rule
+    const double t = t_a + (t_b - t_a) * (d_a / (d_a - d_b));
+    c.place = place_at(placed.is_arc(), pair.mover.sample_c[c.sample], pair.mover.sample_s[c.sample], t);
+    c.p = placed.point(c.place);
+    at = faces.at(c.p);
+    if (std::abs(at.lead) < kSameDistance) break;
+    if (at.lead < 0) {
+      t_a = t;
+      d_a = at.lead;
+      d_b *= 0.5;
+    } else {
+      t_b = t;
+      d_b = at.lead;
+      d_a *= 0.5;
+    }
+  }
+  c.at = at.a;
+  // The blend of both normals that is perpendicular to the segment.
+  const Vector3d tangent = placed.tangent(c.place);
+  const double slope_a = at.a.normal.dot(tangent);
+  const double slope_b = at.b.normal.dot(tangent);
+  if (slope_a * slope_b >= 0) return false;
+  const double weight_a = slope_b / (slope_b - slope_a);
+  const Vector3d mixed = weight_a * at.a.normal + (1 - weight_a) * at.b.normal;
+  const double length = mixed.norm();
+  if (length < pair.motion.thresholds.blade) return false;
+  c.normal = mixed / length;
+  c.gap = (weight_a * at.a.distance + (1 - weight_a) * at.b.distance) / length;
+  c.edge_fraction = 4 * weight_a * (1 - weight_a);
+  // A place that is outside by position is no overlap, whatever the edge by motion says of it.
+  const double farthest = std::max(at.a.distance, at.b.distance);
+  if (c.gap * length < std::min(0.0, farthest) - pair.motion.thresholds.coincident) return false;
+  return c.gap > -pair.base.options.spacing && edge.limits_face_at(edge.faces[0], c.p, at.b.distance) &&
+         edge.limits_face_at(edge.faces[1], c.p, at.a.distance) && faces.are_outermost(c.p);
+}
+
+}  // namespace
+
+Place closest_place_to(const BodyPair& pair, const AnalyticSurface& surface, const PlacedFeature& placed,
+                       std::uint32_t sample) {
+  return closest_place(pair.seen_from(surface, placed, pair.motion.free_twist), pair.mover.sample_c[sample],
+                       pair.mover.sample_s[sample], placed.feature->half_width);
+}
+
+bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
+                const std::array<Place, 2>& near, Candidate& c) {
+  if (placed.feature->half_width == 0) return false;
+  const AnalyticSurface& a = *pair.base.faces[edge.faces[0]].surface;
+  const AnalyticSurface& b = *pair.base.faces[edge.faces[1]].surface;
+  const auto rule_at = [&](const Place& place) {
+    const Vector3d p = placed.point(place);
+    return ownership_rule(a.at(p).distance, b.at(p).distance, pair.motion.thresholds.coincident);
+  };
+  const OwnershipRule here = rule_at(near[0]);
+  const OwnershipRule by_motion = here == OwnershipRule::by_position ? rule_at(near[1]) : here;
+  for (const OwnershipRule rule : {OwnershipRule::by_position, by_motion}) {
+    Candidate crossed = c;
+    if (!cross_edge_by(ComparedFaces(pair, edge.faces[0], edge.faces[1], rule), pair, placed, edge, near, crossed))
+      continue;
+    c = crossed;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace verisim::exact
