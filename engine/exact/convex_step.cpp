@@ -98,7 +98,8 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
       continue;
     }
     Row& row = rows_.emplace_back();
-    row.g = from.gap;
+    row.g = from.gap + from.curving;
+    row.curving = from.curving;
     row.k = from.stiffness;
     row.body = {second, first};
     if (second != kFixed) set(from, second, 1, row.J[0]);

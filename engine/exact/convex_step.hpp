@@ -16,8 +16,9 @@
 // that were hit ask for J w >= e v instead: Newton's law of impact, as in Moreau and Jean's time stepping (Acary and
 // Brogliato, "Numerical Methods for Nonsmooth Dynamical Systems", 2008, chapter 10). v is the speed of approach at the
 // start of the step, e the restitution.
-//   - A row with e > 0 is hit if v is above the threshold speed and it does not overlap by more than a quarter of v dt.
-//     A body that lies has no speed of approach; one that slides along a curved path has, but overlaps by half of v dt.
+//   - A row with e > 0 is hit if v is above the threshold speed and its gap is not below a quarter of v dt.
+//     A body that lies has no speed of approach; one that slides along a curved path has, but its gap will be half of v
+//     dt below zero (ContactRow::curving).
 //   - A row that was open and closes only because of a blow is left out: the next step finds it hit. So a blow is
 //     handed on from body to body, one per step.
 //   - While it is hit a row is as stiff as rigid bodies: a blow is over within the step, whatever the stiffness.
@@ -125,8 +126,9 @@ class ConvexStep {
     std::array<Vector6d, 2> J;  ///< Jacobian: rate of the gap by the bodies' velocities
     std::array<int, 2> body;    ///< the second may be kFixed
     double g, k;
-    double z = 0;   ///< gap at the end of the step
-    double dz = 0;  ///< its change along the search direction
+    double curving = 0;  ///< m, of g: what curved motion will take from the gap
+    double z = 0;        ///< gap at the end of the step
+    double dz = 0;       ///< its change along the search direction
     double force = 0, end_gap = 0;
     double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
     bool late = false;

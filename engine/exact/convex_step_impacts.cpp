@@ -36,9 +36,10 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold) {
     const double known = run.pair.overlap + kUnknown;
     // Bodies that move with u and end with w keep their angular momentum to dt only, so a few are left as they were.
     const bool watches = bodies_.size() > kDenseMax || run.pair.restitution > 0;
-    if (run.pair.restitution == 0 && -row.g <= known) continue;
+    const double overlap = row.curving - row.g;
+    if (run.pair.restitution == 0 && overlap <= known) continue;
     const double approach = -rate(row, &Body::before);
-    if (watches && -row.g > known + std::max(0.0, approach * dt)) {
+    if (watches && overlap > known + std::max(0.0, approach * dt)) {
       row.late = late_ = true;
       row.asked = 0;
       row.g = std::max(row.g, -run.pair.overlap - kPushOut * dt);
@@ -75,7 +76,7 @@ bool ConvexStep::begin_rebound(double dt) {
 void ConvexStep::end_rebound() {
   double held = 0;  // J, by springs at the start
   for (const Row& row : rows_)
-    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * std::min(0.0, row.g) * std::min(0.0, row.g);
+    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * std::pow(std::min(0.0, row.g - row.curving), 2);
   double work = 0;  // J, without rebound
   double linear = 0;
   double quadratic = 0;

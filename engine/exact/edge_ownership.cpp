@@ -54,6 +54,24 @@ bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p
   return is_on_face(pair.base, face, after - there.distance * there.normal);
 }
 
+/// How far a ball's contact point lies from the face that the ball belongs to [m]: the least within the step, for a
+/// body that tilts comes down on other places than now.
+double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
+  const Feature& feature = *placed.feature;
+  const AnalyticSurface& own = *pair.mover.faces[feature.own_face].surface;
+  const Matrix3d to_mover = pair.motion.R.transpose();
+  const Vector3d place = to_mover * (c.p - pair.motion.p);
+  const auto off = [&](const Vector3d& normal) {
+    return std::abs(own.at(place - feature.radius_at(c.place.c) * (to_mover * normal)).distance);
+  };
+  const Vector3d after = c.at.normal - pair.motion.dt * pair.motion.free_twist.angular.cross(c.at.normal);
+  const Vector3d tangent = placed.tangent(c.place);
+  const double slope = c.at.normal.dot(tangent) - feature.radius_slope;
+  const double slope_after = after.dot(tangent) - feature.radius_slope;
+  if (feature.half_width > 0 && slope * slope_after < 0) return 0;
+  return std::min(off(c.at.normal), off(after.normalized()));
+}
+
 /// What a face keeps of a place that the face across a convex edge owns: from 0, nothing, to 1. The face across can
 /// push only along normals of the mover's normal cone; where its own is outside of that cone, and so is that of edge
 /// against edge, nothing would push at all, and the place stays with this face; so does one flush with the face across.
@@ -117,9 +135,9 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
   if (feature.own_face != kNoFace) {
     const Vector3d contact_point =
         pair.motion.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.p);
-    const double off_own_face = std::abs(pair.mover.faces[feature.own_face].surface->at(contact_point).distance);
     const SearchThresholds& fade = pair.motion.thresholds;
-    c.weight = std::min(1.0, (fade.own_face_none - off_own_face) / (fade.own_face_none - fade.own_face_full));
+    const double off = off_own_face(pair, placed, c);
+    c.weight = std::min(1.0, (fade.own_face_none - off) / (fade.own_face_none - fade.own_face_full));
     return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
   }
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);

@@ -27,14 +27,18 @@
 //   Hollows         A rim that slides round within a hollow has the row of its closest place alone: one beside it would
 //                   brake. Where the hollow is hardly wider, the closest place passes much of it within a step: all of
 //                   the rim's groups have rows, and a ball has rows all round (conforming_normals.hpp).
+//   Own face        A ball that a curve carries touches only where the curve is closest; within the step that may be
+//                   another place than now.
 //   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25
 //                   to 40 degrees.
 // A row first appears with a gap of the margin or more and so without force, except for those of a group's ends.
 //
-// Accuracy. Rows are linear; motion and surfaces are curved. Within one step a row lets through, and gives back in the
-// next, half of the place's displacement times the change of the normal: (v dt)^2 / (2 rho) for a place that slides
-// with speed v along a wall of radius of curvature rho, r (omega dt)^2 / 2 for one that turns on a circle of radius r,
-// and r |I^-1 (omega x L)| dt^2 / 2 for one of a body whose spin changes its axis (dynamics/free_rotation.hpp).
+// Accuracy. Rows are linear; motion and surfaces are curved. For contacts with faces a row knows what curves take from
+// its gap within the step, (v dt)^2 / (2 rho) for a place that slides with speed v along a wall of radius of curvature
+// rho, if the bodies move on as they did in the last step (ContactRow::curving). What is left is of third order, and
+// what the step itself changes: r |I^-1 (omega x L)| dt^2 / 2 for a place at r of a body whose spin changes its axis
+// (dynamics/free_rotation.hpp), and all of it after a blow. Rows of edge against edge stay linear: a place that slides
+// or turns overlaps by half of its displacement times the change of the normal, and gives it back in the next step.
 // Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there is no
 // formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7 um.
 #pragma once
@@ -69,6 +73,9 @@ struct SearchThresholds {
   /// Of these, for edge against edge: beyond the cone one edge lies on the face behind the other, and the row is that
   /// face's.
   double cone_of_edges = 0.5;
+  double slow = 1e-5;  ///< m: what moves by less within a step moves along a line
+  /// Of its way: a gap that leaves its linear change by more has passed a kink, not a curve.
+  double kink = 0.1;
   double touching = 1e-6;      ///< m: a part of a segment as near as this touches
   double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone
   double end_apart = 0.25;  ///< of a group's length: an end that is nearer to the closest place needs no row of its own

@@ -34,6 +34,7 @@ class Search {
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
                      std::uint32_t face);
   void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity);
+  [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
 
   const BodyPair pair_;
   RowList& rows_;
@@ -318,6 +319,34 @@ bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) co
   return true;
 }
 
+/// How far below its linear change the gap is at the end of the step [m], if the mover goes on as it did in the last:
+/// surfaces and motion are curved, and along the feature the closest place moves.
+double Search::curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const {
+  const RelativeMotion& motion = pair_.motion;
+  const Feature& feature = *placed.feature;
+  const Vector3d way = pair_.moved(c.p, motion.last_twist);
+  if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
+  const Vector3d turn = motion.dt * motion.last_twist.angular;
+  const auto turned = [&](const Vector3d& v) { return Vector3d(v + turn.cross(v + 0.5 * turn.cross(v))); };
+  const Vector3d moved = pair_.moved(placed.origin, motion.last_twist);
+  const PlacedFeature after{&feature, placed.origin + moved + 0.5 * turn.cross(moved), turned(placed.x),
+                            turned(placed.y)};
+  const auto least = [&](const PlacedFeature& at) {
+    double gap = 0;
+    with_measure(pair_.seen_from(surface, at, {}), [&](auto&& measure_at) {
+      const Measure m = measure_at(c.place.c, c.place.s);
+      const double slope = m.slope - feature.radius_slope;
+      const double reach = 2 * feature.half_width;
+      // Places farther away have rows of their own.
+      const double t = std::abs(slope) < m.bend * reach ? -slope / m.bend : 0;
+      gap = m.distance + t * (slope + 0.5 * t * m.bend);
+    });
+    return gap;
+  };
+  const double curves = least(after) - least(placed) - c.at.normal.dot(way);
+  return curves < -motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
+}
+
 /// Adds the row of a candidate that stands for `count` segments.
 /// @param entity  of the base: a face's number, or an edge's beyond those of the faces
 void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity) {
@@ -330,7 +359,9 @@ void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint3
   const Vector3d place = motion.R_WB * (c.p - feature.radius_at(c.place.c) * c.normal) + motion.p_WB;
   const auto entities = static_cast<std::uint32_t>(pair_.base.faces.size() + pair_.base.edges.size());
   const std::uint32_t source = (c.group * entities + entity) << 1 | static_cast<std::uint32_t>(motion.mover_is_second);
-  rows_.add({motion.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source});
+  const bool is_face = entity < pair_.base.faces.size();
+  const double curves = is_face ? curving(placed, c, *pair_.base.faces[entity].surface) : 0;
+  rows_.add({motion.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source, curves});
   depth_max_ = std::max(depth_max_, -c.gap);
   ++cost_.rows;
 }

@@ -1,6 +1,7 @@
 """The shipped scenarios: a golden hash and golden physical facts each. A hash changes only in a commit that says which
 behaviour changed and why; VERISIM_GOLDEN=1 prints what is measured."""
 import os
+import statistics
 import unittest
 
 import h5py
@@ -8,6 +9,7 @@ import h5py
 from program import turned_stl, ProgramTest, SHARED, SOURCE
 
 MODELS = os.path.join(SHARED, "models")
+SANITIZED = os.environ["VERISIM_SANITIZE"] != ""  # ten times slower: fewer seeds
 
 
 class Scenes(ProgramTest):
@@ -35,12 +37,16 @@ class Scenes(ProgramTest):
     def test_peg_in_hole_with_half_a_voxel_of_clearance(self):
         """Every approach lands on the rim. What guides the pin in there must not be taken for friction: if it is, the
         pin glides off and falls over."""
-        for seed in ["1", "4"]:
+        depth = {"off": [], "restore": []}
+        for seed in "14" if SANITIZED else "123456":
             fit = ["--set", "clearance=mm(1)", "--set", "voxelsize=mm(2)", "--duration", "4", "--seed", seed]
-            off, restore = (self.scene("peg_in_hole", *fit, "--set", "hybrid=" + h) for h in ("off", "restore"))
+            off, restore = (self.scene("peg_in_hole", *fit, "--set", "hybrid=" + h) for h in depth)
             self.assertEqual(restore["measures"]["passes"]["value"], off["measures"]["passes"]["value"], seed)
-            # 1 to 2.5 mm over six seeds, under both: a voxel's depth is not what tells them apart.
-            self.assertLess(restore["max_penetration_m"], max(1.1 * off["max_penetration_m"], 0.002), seed)
+            depth["off"].append(off["max_penetration_m"])
+            depth["restore"].append(restore["max_penetration_m"])
+        # Of one seed it is 1 to 2.5 mm, under both: that of a voxel, as it is met.
+        if not SANITIZED:
+            self.assertLess(statistics.median(depth["restore"]), 1.1 * statistics.median(depth["off"]))
 
     def test_peg_in_hole_in_the_published_scripts_sizes(self):
         s = self.scene("peg_in_hole", "--set", "half=true", "--duration", "5")

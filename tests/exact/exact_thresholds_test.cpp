@@ -147,12 +147,13 @@ TEST_P(ExactThresholds, HardlyChangeWhatALeaningPinFeels) {
   EXPECT_LE(other, lets_more_in ? 0.05 * touching : 0);
 }
 
-// In the seat the numbers move the cone by less than rounding to 1.5e-11 m does, but for the groups' angle: by 4e-11 m.
+// In the seat the numbers move the cone by no more than closest places are off: by up to 4e-11 m, and by 1.3e-10 m where
+// the normal cones are twice as wide, for then rims have rows with rims.
 TEST_P(ExactThresholds, HardlyChangeHowAConeSits) {
   static const Seated usual = seat({});
   const Seated s = seat(numbers());
   for (std::size_t i = 0; i < usual.poses.size(); ++i)
-    EXPECT_LE(apart(s.poses[i], usual.poses[i], 0.03), 1e-10) << "after " << 0.1 * static_cast<double>(i + 1) << " s";
+    EXPECT_LE(apart(s.poses[i], usual.poses[i], 0.03), 1.5e-10) << "after " << 0.1 * static_cast<double>(i + 1) << " s";
   EXPECT_LE(std::abs(s.force_max - usual.force_max), 1e-7 * usual.force_max);
 }
 

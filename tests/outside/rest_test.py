@@ -4,17 +4,12 @@ VERISIM_LONG_TESTS=1: every seat, method, integrator and voxel size, and 40 flig
 """
 import itertools
 import os
-import shutil
-import subprocess
-import tempfile
 import unittest
 
-import h5py
 import numpy as np
 
-VERISIM = os.environ["VERISIM"]
-HERE = os.path.dirname(os.path.abspath(__file__))
-LONG = os.environ.get("VERISIM_LONG_TESTS") == "1"
+from scene_test import HERE, LONG, SceneTest
+
 INTEGRATORS = ("semi-implicit", "implicit")
 MASS = {"box": 0.096, "sphere": 0.0335103, "spherecone": 0.113097, "bowl": 0.0335103, "cylside": 0.100531,
         "vgroove": 0.100531, "bowlcyl": 0.0753982}  # kg: 1000 kg/m^3 of the solids' volumes
@@ -28,29 +23,14 @@ SLIDES = {("box", "restore", "semi-implicit", 0.004): 1, ("cylside", "restore", 
 TURNS = {("vgroove", "off", "semi-implicit", 0.004): 0.04}
 
 
-class RestTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def run_scene(self, scene, *bodies, folder=HERE, **settings):
-        """Poses and forces of bodies, and the method that acted."""
-        out = os.path.join(self.folder, "run.h5")
-        command = [VERISIM, "run", os.path.join(folder, scene), "--quiet", "--force", "-o", out]
-        for name, value in settings.items():
-            command += ["--set", "{}={}".format(name, value if isinstance(value, str) else repr(float(value)))]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        with h5py.File(out) as f:
-            return [(f["state/body/" + b + "/pose"][:], f["state/body/" + b + "/force"][:]) for b in bodies]
-
+class RestTest(SceneTest):
     def test_what_is_placed_at_rest_rests(self):
         seats = list(itertools.product(MASS, ("off", "restore"), INTEGRATORS, (0.002, 0.004)))
         chosen = seats if LONG else [s for i, s in enumerate(seats) if i % 5 == 0 or s in SLIDES or s in TURNS]
         for case in chosen:
             kind, hybrid, integrator, voxelsize = case
             with self.subTest(kind=kind, hybrid=hybrid, integrator=integrator, voxelsize=voxelsize):
-                ((pose, force),) = self.run_scene("resting.lua", "b", kind=kind, hybrid=hybrid, integrator=integrator,
+                pose, _, force = self.run_scene("resting.lua", "b", kind=kind, hybrid=hybrid, integrator=integrator,
                                                   voxelsize=voxelsize)
                 weight = 9.81 * MASS[kind]
                 late = force[1000:, 2]
@@ -63,7 +43,7 @@ class RestTest(unittest.TestCase):
     def test_what_is_pressed_does_not_buzz(self):
         for hybrid, integrator, voxelsize in itertools.product(("off", "restore"), INTEGRATORS, (0.002, 0.004)):
             with self.subTest(hybrid=hybrid, integrator=integrator, voxelsize=voxelsize):
-                ((pose, force),) = self.run_scene("press.lua", "tool", hybrid=hybrid, integrator=integrator,
+                pose, _, force = self.run_scene("press.lua", "tool", hybrid=hybrid, integrator=integrator,
                                                   voxelsize=voxelsize)
                 late = force[-1000:, 2]
                 at_500_hz = abs((late * (-1.0) ** np.arange(1000)).mean())
@@ -74,7 +54,7 @@ class RestTest(unittest.TestCase):
                 self.assertLessEqual(depth, voxelsize * 1.5)
 
     def test_by_default_a_press_is_what_its_springs_say(self):
-        ((_, force),) = self.run_scene("press.lua", "tool")
+        _, _, force = self.run_scene("press.lua", "tool")
         self.assertLessEqual(abs(force[-1000:, 2] - HAND_AND_COUPLING * 0.01).max(), 1e-4)
 
     def test_a_thin_plate_stops_what_flies_at_it(self):
@@ -84,7 +64,7 @@ class RestTest(unittest.TestCase):
                         "voxelsize": draw.choice([0.001, 0.002, 0.004])}
             for hybrid, integrator in itertools.product(("off", "restore", "blend", "exact"), INTEGRATORS):
                 with self.subTest(hybrid=hybrid, integrator=integrator, **settings):
-                    ((pose, _),) = self.run_scene("bullet.lua", "b", hybrid=hybrid, integrator=integrator, **settings)
+                    pose, _, _ = self.run_scene("bullet.lua", "b", hybrid=hybrid, integrator=integrator, **settings)
                     self.assertGreater(pose[:, 2].min(), 0)
 
     def test_the_shipped_stack_stands_under_every_method(self):
@@ -93,13 +73,13 @@ class RestTest(unittest.TestCase):
         for hybrid, integrator in itertools.product(("off", "restore", "blend", "exact"), INTEGRATORS):
             with self.subTest(hybrid=hybrid, integrator=integrator):
                 recorded = self.run_scene("stack.lua", *boxes, folder=scenarios, hybrid=hybrid, integrator=integrator)
-                for i, (pose, _) in enumerate(recorded):
+                for i, (pose, _, _) in enumerate(recorded):
                     self.assertLessEqual(abs(pose[-1, 2] - (0.03 + 0.04 * i)), 1e-3)
 
     def test_a_light_body_between_heavy_ones_is_not_thrown(self):
         for hybrid, integrator, gap in itertools.product(("off", "restore", "blend"), INTEGRATORS, (0, 0.002)):
             with self.subTest(hybrid=hybrid, integrator=integrator, gap=gap):
-                (light, _), (heavy, _) = self.run_scene("light_between.lua", "light", "heavy", hybrid=hybrid,
+                (light, _, _), (heavy, _, _) = self.run_scene("light_between.lua", "light", "heavy", hybrid=hybrid,
                                                         integrator=integrator, gap=gap)
                 self.assertLessEqual(np.linalg.norm(light[:, :3] - light[0, :3], axis=1).max(), 0.02)
                 self.assertLessEqual(heavy[:, 2].max(), heavy[0, 2] + 1e-4)
