@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <lua.hpp>
+#include <string_view>
 
 #include "engine/script/work.hpp"
 
@@ -82,6 +83,11 @@ std::uint64_t texts_in_list(lua_State* L, const char* text, std::size_t size) {
   return count > kFree ? count : 0;
 }
 
+/// What Lua writes down of an error that it has just caught. Nothing protects it there: an error would end the program.
+bool is_of_caught_error(std::string_view text) {
+  return text == "not enough memory" || text == "error in error handling";
+}
+
 void count_values(std::int64_t values) {
   constexpr std::int64_t kFew = 16;
   if (values > kFew) work.used += static_cast<std::uint64_t>(values) / 2;
@@ -95,7 +101,7 @@ std::int64_t values_above(lua_State* L, const lua_TValue* from) {
 
 TString* luaS_newlstr(lua_State* L, const char* text, std::size_t size) {
   work.used += kTextWork + size / 8 + texts_in_list(L, text, size);
-  raise_if_spent(L);
+  if (!is_of_caught_error({text, size})) raise_if_spent(L);
   if (size > kLongestText)
     luaL_error(L, "a text of %d MiB is longer than a text may be (64 MiB)", static_cast<int>(size >> 20));
   return verisim_lua_newlstr(L, text, size);

@@ -91,6 +91,8 @@ Sandbox::Sandbox(std::string name, std::size_t memory_limit) : name_(std::move(n
   const auto* content = static_cast<const std::byte*>(lua_newuserdata(lua_, 1));
   userdata_offset_ = static_cast<std::size_t>(content - static_cast<const std::byte*>(newest_block_));
   lua_pop(lua_, 1);
+  lua_pushliteral(lua_, "error in error handling");  // is there when Lua needs it and no memory is left
+  luaL_ref(lua_, LUA_REGISTRYINDEX);
   lua_gc(lua_, LUA_GCSETPAUSE, 150);  // Lua 5.1 does not collect when memory runs out: collect well before
   lua_sethook(lua_, &Sandbox::count_hook, LUA_MASKCOUNT, kHookInterval);
   allow(100'000'000);

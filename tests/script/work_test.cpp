@@ -214,6 +214,25 @@ TEST(Work, InstructionsArePaidByWhatTheyDo) {
     EXPECT_LT(seconds_of(text), kOverrunMax) << text;
 }
 
+// Memory and allowance may end in one and the same request: it is paid for, and then refused.
+TEST(Work, MayEndTogetherWithTheMemory) {
+  for (const std::string& text : {
+           std::string("local t = {} for i = 1, 1e9 do t[i] = i end"),
+           std::string("coroutine.wrap(function() local t = {} for i = 1, 1e9 do t[i] = i end end)()"),
+           std::string("pcall(function() local t = {} for i = 1, 1e9 do t[i] = i end end)"),
+           std::string("xpcall(function() local t = {} for i = 1, 1e9 do t[i] = i end end, "
+                       "function() local t = {} for i = 1, 1e9 do t[i] = i end end)"),
+           std::string("local s = 'x' for i = 1, 1e9 do s = s .. s end"),
+           std::string("local function f() return f() + 1 end f()"),
+           std::string("local function f() return unpack({}, 1, 7000), f() end f()"),
+       })
+    for (double units = 1e4; units < 1e7; units *= 1.04) {
+      BareSandbox sandbox;
+      sandbox.failure_of(text, static_cast<std::uint64_t>(units));  // and the program goes on
+      EXPECT_EQ(sandbox.value_of("1 + 1"), "2") << text;
+    }
+}
+
 TEST(Work, NothingCatchesTheEndOfTheAllowance) {
   const std::string forever = "while true do end";
   for (const std::string& text : {
