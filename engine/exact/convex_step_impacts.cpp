@@ -75,8 +75,10 @@ bool ConvexStep::begin_rebound(double dt) {
 /// along the mean of the velocities before and after: a parabola in the fraction s of the rebound that is taken.
 void ConvexStep::end_rebound() {
   double held = 0;  // J, by springs at the start
-  for (const Row& row : rows_)
-    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * std::pow(std::min(0.0, row.g - row.curving), 2);
+  for (const Row& row : rows_) {
+    const double overlap = std::max(0.0, row.curving - row.g);
+    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * overlap * overlap;
+  }
   double work = 0;  // J, without rebound
   double linear = 0;
   double quadratic = 0;

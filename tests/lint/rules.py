@@ -61,7 +61,7 @@ HOME_OF_LIBRARY = {
 
 # What a folder's CMakeLists.txt may link besides the project's own: the libraries above, by the names CMake knows.
 HOME_OF_LINKED = {
-    "verisim_flags": EVERYWHERE, "Threads::Threads": EVERYWHERE,
+    "verisim_flags": EVERYWHERE, "verisim_small_arrays": ["engine/exact"], "Threads::Threads": EVERYWHERE,
     "Eigen3::Eigen": ["engine/base"], "fmt::fmt": ["engine/base"], "sleef": ["engine/base"],
     "OpenSSL::Crypto": ["engine/base"], "CGAL::CGAL": ["engine/geometry"],
     "hwy::hwy": ["engine/contact", "engine/constraint"], "fcl": ["engine/contact"],

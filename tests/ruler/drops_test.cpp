@@ -1,11 +1,10 @@
 // What `exact` records beside the true overlap, over random drops and presses of 16 bodies on 16 seats: 200 of them;
 // 2,000 with VERISIM_LONG_TESTS=1, or those from A to B - 1 with VERISIM_DROPS=A-B. It prints how they differ, by kind,
 // and every scene beyond the goal: within 5 um or 10 %, no overlap above 50 um, mechanical energy never rises. Asserted
-// is that of the 200 none but those listed here is beyond it. Of others it only tells.
+// is that of the 200 none is beyond it; of those listed here the record may be farther off. Of others it only tells.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <map>
 
@@ -23,9 +22,9 @@ constexpr double kGain = 0.01;                            // of the initial kine
 // At rest is what has less kinetic energy than that, of the same, for so many frames. Then it gains none.
 constexpr double kRest = 1e-6, kRestGain = 1e-6;
 constexpr int kRestFrames = 20;
-/// Seeds below 200 that are beyond the goal: records that miss an edge (40, 86, 116), and overlaps above 50 um that the
-/// record knows of. Whoever mends the search takes them off.
-constexpr std::array<std::uint64_t, 8> kKnown = {40, 54, 86, 94, 110, 116, 126, 130};
+/// Seeds below 200 that are beyond the goal, and by how much [m]: edges that the record misses for a frame. Whoever
+/// mends the search takes them off.
+const std::map<std::uint64_t, double> kKnown = {{100, 15e-6}, {116, 12e-6}};
 
 struct Outcome {
   std::string body, seat;
@@ -198,9 +197,12 @@ TEST(RandomDrops, AreRecordedAsDeepAsTheyAre) {
   if (asked.are_asked_for) return;
   EXPECT_GE(touched, outcomes.size() / 2) << "most bodies met nothing: this would prove nothing";
   for (const Outcome& o : outcomes) {
-    if (std::find(kKnown.begin(), kKnown.end(), o.seed) != kKnown.end()) continue;
     SCOPED_TRACE(o.body + " on " + o.seat + ", seed " + std::to_string(o.seed));
-    EXPECT_TRUE(o.agrees()) << o.recorded << " m recorded, " << o.overlap << " m true";
+    const auto known = kKnown.find(o.seed);
+    if (known == kKnown.end())
+      EXPECT_TRUE(o.agrees()) << o.recorded << " m recorded, " << o.overlap << " m true";
+    else
+      EXPECT_LE(std::abs(o.difference), known->second);
     EXPECT_LE(o.deepest, kDeep);
     EXPECT_LE(o.energy_gain, kGain);
     EXPECT_LE(o.rest_gain, kRestGain);
