@@ -147,8 +147,8 @@ TEST_P(ExactThresholds, HardlyChangeWhatALeaningPinFeels) {
   EXPECT_LE(other, lets_more_in ? 0.05 * touching : 0);
 }
 
-// In the seat the numbers move the cone by no more than closest places are off: by up to 4e-11 m, and by 1.3e-10 m where
-// the normal cones are twice as wide, for then rims have rows with rims.
+// In the seat the numbers move the cone by no more than closest places are off: by up to 4e-11 m, and by 1.3e-10 m
+// where the normal cones are twice as wide, for then rims have rows with rims.
 TEST_P(ExactThresholds, HardlyChangeHowAConeSits) {
   static const Seated usual = seat({});
   const Seated s = seat(numbers());
