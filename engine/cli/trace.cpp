@@ -28,7 +28,7 @@ ordered_json describe(const Trace& trace) {
   ordered_json j;
   const std::size_t n = trace.rows();
   j["kind"] = trace.kind;
-  j["rate_hz"] = trace.rate_hz;
+  if (trace.rate_hz > 0) j["rate_hz"] = trace.rate_hz;
   j["source"] = trace.source;
   for (const auto& [key, value] : trace.extra) j[key] = value;
   j["samples"] = n;

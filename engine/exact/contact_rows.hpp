@@ -15,7 +15,7 @@ struct ContactRow {
   Vector3d point;        ///< where the force acts [m]
   double gap;            ///< m, < 0: the bodies overlap by that much along the normal
   double stiffness;      ///< N/m
-  std::uint32_t source;  ///< identifies body, sample and face; the same in the next frame
+  std::uint32_t source;  ///< identifies body, sample and face or edge; the same in the next frame
   double curving = 0;  ///< m, <= 0: by so much the gap ends below its linear change, if the bodies move on as they did
 };
 

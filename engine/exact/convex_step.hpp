@@ -16,7 +16,7 @@
 // that were hit ask for J w >= e v instead: Newton's law of impact, as in Moreau and Jean's time stepping (Acary and
 // Brogliato, "Numerical Methods for Nonsmooth Dynamical Systems", 2008, chapter 10). v is the speed of approach at the
 // start of the step, e the restitution.
-//   - A row with e > 0 is hit if v is above the threshold speed and its gap is not below a quarter of v dt.
+//   - A row with e > 0 is hit if v is above the threshold speed and its gap is at least -v dt / 4.
 //     A body that lies has no speed of approach; one that slides along a curved path has, but its gap will be half of v
 //     dt below zero (ContactRow::curving).
 //   - A row that was open and closes only because of a blow is left out: the next step finds it hit. So a blow is

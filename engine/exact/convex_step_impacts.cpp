@@ -10,7 +10,7 @@ namespace {
 /// While it is hit a row's stiffness is at least that of the lighter body's mass times this by dt^2: the rebound is
 /// right to about (1 + 1 / e) of its inverse.
 constexpr double kRigid = 1e5;
-/// Of the speed of approach times dt: a row that overlaps by more slides, and is not hit.
+/// Of the speed of approach times dt: a row whose gap is below minus that slides, and is not hit.
 constexpr double kOverlapOfHit = 0.25;
 /// m. By so much a row may overlap more than is known without being late: a step along a curve does that.
 constexpr double kUnknown = 1e-5;

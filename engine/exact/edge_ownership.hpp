@@ -26,6 +26,7 @@ enum class OwnershipRule : std::uint8_t { by_position, by_free_motion, by_last_m
 struct ComparedDistances {
   double mine, other;
 };
+/// By that rule; compared_distances() by the one that holds at the point.
 [[nodiscard]] ComparedDistances compared_by(const BodyPair& pair, OwnershipRule rule, const Vector3d& p,
                                             const SurfaceAt& mine, const SurfaceAt& other);
 [[nodiscard]] ComparedDistances compared_distances(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine,

@@ -10,12 +10,12 @@
 //   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
 //                   larger distance owns the place. At a concave edge each face has its row, so the smaller distance
 //                   counts.
-//   Edge and edge   The mover's curves are tested against the convex edges, too. Where a segment crosses from one face
-//                   of an edge to the other, there is a row with the normal perpendicular to both curves; it crosses
-//                   now or, where it does not yet, after the step (edge_crossing.hpp).
 //                   A face owns only what it can push: where its normal, and that of edge against edge, is outside of
 //                   the mover's normal cone, the place stays with the face across. So a rim that lies on an edge, or
 //                   comes down on it, is held by the one face that can hold it.
+//   Edge and edge   The mover's curves are tested against the convex edges, too. Where a segment crosses from one face
+//                   of an edge to the other, there is a row with the normal perpendicular to both curves; it crosses
+//                   now or, where it does not yet, after the step (edge_crossing.hpp).
 //   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
 //                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
 //                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.

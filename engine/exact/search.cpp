@@ -33,7 +33,9 @@ class Search {
   void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
                      std::uint32_t face);
-  void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity);
+  void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
+  void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity,
+               double curving);
   [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
 
   const BodyPair pair_;
@@ -53,27 +55,27 @@ template <typename Test>
 void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) const {
   const RelativeMotion& motion = pair_.motion;
   const auto& blocks = pair_.mover.block_tree.nodes;
-  const auto& faces = base.nodes;
-  if (blocks.empty() || faces.empty()) return;
+  const auto& entities = base.nodes;
+  if (blocks.empty() || entities.empty()) return;
   stack.clear();
   stack.emplace_back(0, 0);
   while (!stack.empty()) {
     const auto [g, s] = stack.back();
     stack.pop_back();
     const BoxTree::Node& block = blocks[g];
-    const BoxTree::Node& face = faces[s];
-    const Vector3d reach = motion.R.cwiseAbs() * block.half + face.half + Vector3d::Constant(motion.margin);
-    if (((motion.R * block.center + motion.p - face.center).cwiseAbs().array() > reach.array()).any()) continue;
+    const BoxTree::Node& entity = entities[s];
+    const Vector3d reach = motion.R.cwiseAbs() * block.half + entity.half + Vector3d::Constant(motion.margin);
+    if (((motion.R * block.center + motion.p - entity.center).cwiseAbs().array() > reach.array()).any()) continue;
     const bool block_is_leaf = block.right == BoxTree::kLeaf;
-    const bool face_is_leaf = face.right == BoxTree::kLeaf;
-    if (block_is_leaf && face_is_leaf) {
-      test(block.left, face.left);
-    } else if (face_is_leaf || (!block_is_leaf && block.half.squaredNorm() > face.half.squaredNorm())) {
+    const bool entity_is_leaf = entity.right == BoxTree::kLeaf;
+    if (block_is_leaf && entity_is_leaf) {
+      test(block.left, entity.left);
+    } else if (entity_is_leaf || (!block_is_leaf && block.half.squaredNorm() > entity.half.squaredNorm())) {
       stack.emplace_back(block.right, s);
       stack.emplace_back(block.left, s);
     } else {
-      stack.emplace_back(g, face.right);
-      stack.emplace_back(g, face.left);
+      stack.emplace_back(g, entity.right);
+      stack.emplace_back(g, entity.left);
     }
   }
 }
@@ -143,7 +145,7 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
       if (c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)
-      add_row(placed, best, size, static_cast<std::uint32_t>(pair_.base.faces.size()) + e);
+      add_row(placed, best, size, static_cast<std::uint32_t>(pair_.base.faces.size()) + e, 0);
   }
 }
 
@@ -189,11 +191,11 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     if (c.gap_ahead < 0 && c.weight > strongest.weight) strongest = c;
   }
   if (best.gap_ahead == kOutOfReach) return;
-  add_row(placed, best, count, face);
+  add_face_row(placed, best, count, face);
   if (placed.feature->own_face != kNoFace) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
-    add_row(placed, strongest, count, face);
+    add_face_row(placed, strongest, count, face);
   }
   if (best.gap_ahead >= 0) return;
   for (const int side : {-1, 1}) add_group_end(placed, best, std::span(estimates).first(count), side, face);
@@ -269,7 +271,7 @@ void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, 
     c.normal = around.normals[i];
     c.at = {best.at.distance + (c.normal - best.normal).dot(best.p - around.pivot), c.normal};
     c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
-    if (c.gap < motion.margin && accept_candidate(pair_, placed, face, c)) add_row(placed, c, count, face);
+    if (c.gap < motion.margin && accept_candidate(pair_, placed, face, c)) add_row(placed, c, count, face, 0);
   }
 }
 
@@ -297,7 +299,7 @@ void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, s
     c.sample = best.group + static_cast<std::uint32_t>(i);
     c.place = place_at(placed.is_arc(), pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], side * half);
     if (!evaluate_candidate(placed, face, 1, c)) continue;
-    if (is_coincident(c.gap_ahead, (c.p - best.p).norm())) add_row(placed, c, 1, face);
+    if (is_coincident(c.gap_ahead, (c.p - best.p).norm())) add_face_row(placed, c, 1, face);
     return;
   }
 }
@@ -347,9 +349,15 @@ double Search::curving(const PlacedFeature& placed, const Candidate& c, const An
   return curves < -motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
 }
 
+/// Adds the row of a candidate that touches the face's surface, not a plane beside it.
+void Search::add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
+  add_row(placed, c, count, face, curving(placed, c, *pair_.base.faces[face].surface));
+}
+
 /// Adds the row of a candidate that stands for `count` segments.
 /// @param entity  of the base: a face's number, or an edge's beyond those of the faces
-void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity) {
+void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity,
+                     double curving) {
   const RelativeMotion& motion = pair_.motion;
   const Feature& feature = *placed.feature;
   if (c.weight == 0) return;
@@ -359,9 +367,7 @@ void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint3
   const Vector3d place = motion.R_WB * (c.p - feature.radius_at(c.place.c) * c.normal) + motion.p_WB;
   const auto entities = static_cast<std::uint32_t>(pair_.base.faces.size() + pair_.base.edges.size());
   const std::uint32_t source = (c.group * entities + entity) << 1 | static_cast<std::uint32_t>(motion.mover_is_second);
-  const bool is_face = entity < pair_.base.faces.size();
-  const double curves = is_face ? curving(placed, c, *pair_.base.faces[entity].surface) : 0;
-  rows_.add({motion.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source, curves});
+  rows_.add({motion.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source, curving});
   depth_max_ = std::max(depth_max_, -c.gap);
   ++cost_.rows;
 }

@@ -46,7 +46,7 @@ bool is_run(const std::string& path) {
 bool is_trace(const std::string& path) {
   if (begins_with(path, "# verisim-trace")) return true;
   return hdf5_passes(path, [](hid_t file) {
-    return hdf5::has_attribute(file, "kind") && hdf5::has_attribute(file, "rate_hz") && hdf5::exists(file, "t");
+    return hdf5::has_attribute(file, "kind") && hdf5::has_attribute(file, "source") && hdf5::exists(file, "t");
   });
 }
 

@@ -17,7 +17,7 @@ namespace verisim {
 /// A trace as a table of numbers.
 struct Trace {
   std::string kind;                          ///< "haptic", "wii", "encoder"
-  double rate_hz = 0;                        ///< nominal
+  double rate_hz = 0;                        ///< nominal; 0: not known, as that of one sample
   std::string source;                        ///< who recorded what with what
   std::map<std::string, std::string> extra;  ///< further "# key: value" lines (leds, fov_deg, remote_pose …)
   std::vector<std::string> columns;          ///< "t" first

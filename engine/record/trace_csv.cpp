@@ -133,8 +133,8 @@ Trace read_trace_csv(const std::string& name, std::string_view content, RowPlace
 }
 
 std::string trace_as_csv(const Trace& trace) {
-  std::string text = "# verisim-trace 1\n# kind: " + trace.kind + "\n# rate_hz: ";
-  append(text, trace.rate_hz);
+  std::string text = "# verisim-trace 1\n# kind: " + trace.kind;
+  if (trace.rate_hz > 0) append(text += "\n# rate_hz: ", trace.rate_hz);
   text += "\n# source: " + one_line(trace.source) + "\n";
   for (const auto& [key, value] : trace.extra) text += "# " + one_line(key) + ": " + one_line(value) + "\n";
   const std::size_t width = trace.columns.size();

@@ -116,7 +116,7 @@ void write_trace_hdf5(const std::string& path, const Trace& trace) {
     Handle file(check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, hdf5::file_creation(), hdf5::file_access()), path.c_str()),
                 H5Fclose);
     hdf5::write_attribute(file, "kind", trace.kind);
-    hdf5::write_attribute(file, "rate_hz", trace.rate_hz);
+    if (trace.rate_hz > 0) hdf5::write_attribute(file, "rate_hz", trace.rate_hz);
     hdf5::write_attribute(file, "source", trace.source);
     for (const auto& [key, value] : trace.extra) hdf5::write_attribute(file, key, value);
     std::vector<double> values(trace.rows());

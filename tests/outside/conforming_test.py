@@ -17,7 +17,8 @@ VOLUME = {"tube": BALL, "socket": BALL, "cone": BALL, "bore": PIN, "plug": PLUG}
 
 class ConformingTest(SceneTest):
     def check_rest(self, kind, clearance):
-        # Let go where it can rest, but for a small part of the clearance.
+        # Let go where it can rest, but for a small part of the clearance: nothing brakes a ball that swings by 0.01 of it,
+        # and it pushes sideways with up to 0.01 of its weight.
         near = max(clearance, 1e-6)
         pose, _, force = self.run_scene("conforming.lua", "body", kind=kind, clearance=clearance, drop=0.05 * near,
                                         side=0.01 * near)
@@ -79,7 +80,7 @@ class ConformingTest(SceneTest):
                     self.assertLess(recorded.pose[-1, 2], 0.012, "it goes in")
                     self.assertLessEqual(self.largest_force(recorded), 2 * of_pin)
                     # Wanted: 1e-6. A triangle's corner that meets the lead-in's corner has no row in one frame.
-                    self.assertLessEqual(self.true_overlap(), 1.7e-6 if kind == "tri" else 1e-6)
+                    self.assertLessEqual(self.true_overlap(), 1.7e-6 if (kind, c) == ("tri", 1e-4) else 1e-6)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
+#include "engine/record/output_place.hpp"
 #include "tests/record/small_run.hpp"
 
 namespace verisim::trace_test {
@@ -80,6 +81,18 @@ TEST(Trace, ComesBackFromHdf5ToTheBit) {
     expect_equal(parse(content_of(folder.file(name))), trace);
   }
   EXPECT_EQ(folder.files(), 2u);
+}
+
+TEST(Trace, OfOneSampleComesBackWithoutARate) {
+  const Folder folder;
+  Trace trace = random_trace(1);
+  trace.rate_hz = 0;
+  trace.values.resize(trace.columns.size());
+  for (const char* name : {"a.csv", "a.h5"}) {
+    write_trace(folder.file(name), trace);
+    expect_equal(parse(content_of(folder.file(name))), trace);
+    EXPECT_NO_THROW((void)check_output({folder.file(name), OutputKind::trace, false, ""})) << "it may be replaced";
+  }
 }
 
 TEST(Trace, WritesTheSameBytesForTheSameTrace) {

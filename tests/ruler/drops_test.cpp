@@ -1,7 +1,7 @@
 // What `exact` records beside the true overlap, over random drops and presses of 16 bodies on 16 seats: 200 of them;
 // 2,000 with VERISIM_LONG_TESTS=1, or those from A to B - 1 with VERISIM_DROPS=A-B. It prints how they differ, by kind,
 // and every scene beyond the goal: within 5 um or 10 %, no overlap above 50 um, mechanical energy never rises. Asserted
-// is that of the 200 none is beyond it; of those listed here the record may be farther off. Of others it only tells.
+// is that of the 200 none is beyond it, but that a record listed here may differ by more. Of others it only tells.
 #include <gtest/gtest.h>
 
 #include <algorithm>
