@@ -22,7 +22,9 @@ class Search {
   void cross_block(std::uint32_t block, std::uint32_t edge);
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b) const;
   void reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
-                    std::span<double> remaining, std::uint32_t face);
+                    std::span<double> now, std::span<double> remaining, std::uint32_t face);
+  [[nodiscard]] bool evaluate_segment(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t count,
+                                      std::uint32_t face, Candidate& c);
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
@@ -93,12 +95,14 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   const std::uint32_t count = block.end - block.begin;
   const double* c = &pair_.mover.sample_c[block.begin];
   BlockDistances distances;
-  PerSample gaps_ahead;  // m, estimated gaps at the end of the step without contact
+  PerSample gaps_now;    // m, estimated
+  PerSample gaps_ahead;  // m, likewise, at the end of the step without contact
   bool any = false;
   pair_.measure_all(curve, block, [&](std::uint32_t i, const Measure& m) {
     const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - feature.radius_at(c[i]);
     distances.distance[i] = m.distance;
     distances.change[i] = m.change;
+    gaps_now[i] = nearest;
     gaps_ahead[i] = nearest < motion.margin ? nearest + m.change : kOutOfReach;
     any = any || nearest < motion.margin;
   });
@@ -107,7 +111,8 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   if (feature.own_face == kNoFace && count > 1) cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
   for (std::uint32_t i = 0; i < count; i += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - i);
-    reduce_group(placed, curve, block.begin + i, std::span(gaps_ahead).subspan(i, size), face);
+    reduce_group(placed, curve, block.begin + i, std::span(gaps_now).subspan(i, size),
+                 std::span(gaps_ahead).subspan(i, size), face);
   }
 }
 
@@ -142,6 +147,7 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
       cost_.closest_places += 2;
       if (!cross_edge(pair_, placed, edge, {near(0), near(1)}, c) || !is_near(placed, size, c)) continue;
       c.weight *= pair_.edge_cone_weight(c.sample, c.normal);
+      if (c.weight > 0) depth_max_ = std::max(depth_max_, -c.gap);
       if (c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)
@@ -164,14 +170,18 @@ bool Search::may_cross(const Feature& feature, const Measure& a, const Measure& 
 /// Contact reduction: one row for a group of samples. Among the candidates that the face accepts it is the one with the
 /// smallest gap at the end of the step without contact. If its weight is too small (a segment's end on a slope), the
 /// candidate with the largest weight among those that will touch carries the rest. A coincident group has rows at its
-/// ends too.
-/// @param remaining  estimated gaps at the end of the step; overwritten
+/// ends too. What overlaps now and leaves within the step has no row, but its depth is told.
+/// @param now        estimated gaps
+/// @param remaining  likewise, at the end of the step; kOutOfReach: no candidate. Both are overwritten
 void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
-                          std::span<double> remaining, std::uint32_t face) {
+                          std::span<double> now, std::span<double> remaining, std::uint32_t face) {
   const BodyPair& m = pair_;
   const auto count = static_cast<std::uint32_t>(remaining.size());
   std::array<double, kGroupMax> estimates;
-  std::copy(remaining.begin(), remaining.end(), estimates.begin());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    estimates[i] = remaining[i];
+    if (remaining[i] == kOutOfReach) now[i] = kOutOfReach;
+  }
   Candidate best;
   Candidate strongest;
   best.gap_ahead = kOutOfReach;
@@ -183,14 +193,20 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     Candidate c;
     c.group = begin;
     c.sample = begin + static_cast<std::uint32_t>(next - remaining.begin());
-    *next = kOutOfReach;
-    c.place = closest_place(curve, m.mover.sample_c[c.sample], m.mover.sample_s[c.sample], placed.feature->half_width,
-                            placed.feature->radius_slope);
-    if (!evaluate_candidate(placed, face, count, c) || is_passed_by(placed, curve, c)) continue;
+    *next = now[c.sample - begin] = kOutOfReach;
+    if (!evaluate_segment(placed, curve, count, face, c) || is_passed_by(placed, curve, c)) continue;
     if (c.gap_ahead < best.gap_ahead) best = c;
     if (c.gap_ahead < 0 && c.weight > strongest.weight) strongest = c;
   }
   if (best.gap_ahead == kOutOfReach) return;
+  while (true) {
+    const auto next = std::min_element(now.begin(), now.end());
+    if (!(*next < -depth_max_ - m.motion.thresholds.coincident)) break;
+    Candidate c;
+    c.sample = begin + static_cast<std::uint32_t>(next - now.begin());
+    *next = kOutOfReach;
+    (void)evaluate_segment(placed, curve, count, face, c);  // counts its depth
+  }
   add_face_row(placed, best, count, face);
   if (placed.feature->own_face != kNoFace) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
@@ -199,6 +215,14 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   }
   if (best.gap_ahead >= 0) return;
   for (const int side : {-1, 1}) add_group_end(placed, best, std::span(estimates).first(count), side, face);
+}
+
+/// Likewise of the closest place of the candidate's segment.
+bool Search::evaluate_segment(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t count,
+                              std::uint32_t face, Candidate& c) {
+  c.place = closest_place(curve, pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample],
+                          placed.feature->half_width, placed.feature->radius_slope);
+  return evaluate_candidate(placed, face, count, c);
 }
 
 /// Computes gap, normal and weight of a candidate from its sample and place; it stands for `count` segments. False if
@@ -213,6 +237,7 @@ bool Search::evaluate_candidate(const PlacedFeature& placed, std::uint32_t face,
   c.normal = c.at.normal;
   if (!accept_candidate(pair_, placed, face, c) || !is_near(placed, count, c)) return false;
   c.weight *= pair_.normal_cone_weight(c.sample, c.normal);
+  if (c.weight > 0) depth_max_ = std::max(depth_max_, -c.gap);
   return true;
 }
 
