@@ -1,24 +1,80 @@
 // Devices: what a hand holds. A source (recorded trace, operator model) moves a handle; hardware models and filters
-// wrap a device and are devices themselves (dissertation section 4.3.1). World coordinates, SI.
+// wrap a device and are devices themselves, in any order (dissertation section 4.3.1). World coordinates, SI.
 //
 // One frame: sample() runs from the source outward to the outermost filter and yields the virtual handle; after the
 // coupling, render() runs back inward with the wrench that the hand shall feel, until the hardware (or operator) gets
-// it.
+// it. What a device may know of the frame comes with the call (DeviceFrame); it asks nobody else.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
+#include "engine/base/columns.hpp"
+#include "engine/base/contract.hpp"
 #include "engine/base/pose.hpp"
 
 namespace verisim {
+
+/// What a device is told of a frame.
+struct DeviceFrame {
+  std::uint64_t number = 0;
+  double t = 0;                   ///< s
+  double dt = 0;                  ///< s
+  std::uint32_t collisions = 0;   ///< contacts of the body that the device holds; for sample() of the frame before
+  bool collision_starts = false;  ///< in the same frame; debounced (CollisionStart)
+};
 
 /// What a device says in one frame.
 struct DeviceReading {
   Pose raw;            ///< what the hardware reports
   Pose handle;         ///< the virtual handle: after all filters
+  Twist velocity;      ///< of the virtual handle, over the step that ended with this frame; 0 in the first
   bool button = true;  ///< a source without a button holds throughout
+};
+
+/// The velocity that brings a handle from one pose to the other within dt. @pre dt > 0
+[[nodiscard]] inline Twist velocity_between(const Pose& before, const Pose& now, double dt) {
+  return {(now.position - before.position) / dt, vector_from_rotation(now.rotation * before.rotation.conjugate()) / dt};
+}
+
+/// A box of handle positions [m]; infinite where nothing bounds them.
+struct Workspace {
+  Vector3d min = Vector3d::Constant(-std::numeric_limits<double>::infinity());
+  Vector3d max = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  [[nodiscard]] bool contains(const Vector3d& p) const {
+    return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
+  }
+};
+
+/// What a handle adds to the hand that holds it.
+struct HandleLoad {
+  double mass = 0;      ///< kg, apparent
+  double friction = 0;  ///< N, Coulomb
+};
+
+/// What began or ended in a frame. Texts are literals.
+class DeviceNotes {
+ public:
+  static constexpr std::size_t kMax = 32;
+  struct Note {
+    const char* kind;
+    const char* text;  ///< behind the device's name
+  };
+  /// No allocation. @pre there are fewer than kMax in this frame: two of each part of a chain
+  void add(const char* kind, const char* text) {
+    VERISIM_ASSERT(count_ < kMax);
+    notes_[count_++] = {kind, text};
+  }
+  [[nodiscard]] const Note* begin() const { return notes_.data(); }
+  [[nodiscard]] const Note* end() const { return notes_.data() + count_; }
+  void clear() { count_ = 0; }
+
+ private:
+  std::array<Note, kMax> notes_{};
+  std::size_t count_ = 0;
 };
 
 class Device {
@@ -29,13 +85,15 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   [[nodiscard]] virtual const std::string& name() const = 0;
-  /// Brings the device to simulated time t [s] (frame * dt). Called once a frame, in order.
-  /// @pre t is finite and not before that of the last call; dt is finite and above 0
-  virtual void sample(std::uint64_t frame, double t, double dt) = 0;
+  /// Its chain in words, innermost first: "omni (Phantom Omni, 3.3 N, …), scaled by 4".
+  [[nodiscard]] virtual std::string described() const = 0;
+  /// Brings the device to the frame's time. Called once a frame, in order.
+  /// @pre frame.t is finite and not before that of the last call; frame.dt is finite and above 0
+  virtual void sample(const DeviceFrame& frame) = 0;
   /// What sample() found; before the first one, where the device rests.
   [[nodiscard]] virtual const DeviceReading& reading() const = 0;
   /// The wrench that the hand shall feel, about the virtual handle [N, N m].
-  virtual void render(const Wrench& wrench, double dt) = 0;
+  virtual void render(const Wrench& wrench, const DeviceFrame& frame) = 0;
   /// What the hardware was told to render in the last frame: after filters and limits.
   [[nodiscard]] virtual const Wrench& rendered() const = 0;
   /// Simulated time after which the device has nothing more to do [s]; 0: it has no end of its own.
@@ -45,6 +103,15 @@ class Device {
   [[nodiscard]] virtual double travel() const = 0;
   /// Is anything driving it? A device that nothing drives stays at its home pose (and the run says so).
   [[nodiscard]] virtual bool driven() const = 0;
+  /// Where the virtual handle can be.
+  [[nodiscard]] virtual Workspace workspace() const { return {}; }
+  /// Of a source: the handle's own load, before the first frame. A recorded hand has felt its handle already.
+  virtual void carry(const HandleLoad& /*load*/) {}
+  /// Adds what the device itself records, under /state/device/NAME. Called once, before the first frame; the getters
+  /// live as long as the device.
+  virtual void declare(Columns& /*columns*/) const {}
+  /// Says what began or ended in the frame that was rendered last. No allocation.
+  virtual void report(DeviceNotes& /*notes*/) {}
 };
 
 }  // namespace verisim

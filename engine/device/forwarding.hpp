@@ -18,13 +18,18 @@ class ForwardingDevice : public Device {
     VERISIM_ASSERT(inner_ != nullptr);
   }
   [[nodiscard]] const std::string& name() const override { return inner_->name(); }
-  void sample(std::uint64_t frame, double t, double dt) override { inner_->sample(frame, t, dt); }
+  [[nodiscard]] std::string described() const override { return inner_->described(); }
+  void sample(const DeviceFrame& frame) override { inner_->sample(frame); }
   [[nodiscard]] const DeviceReading& reading() const override { return inner_->reading(); }
-  void render(const Wrench& wrench, double dt) override { inner_->render(wrench, dt); }
+  void render(const Wrench& wrench, const DeviceFrame& frame) override { inner_->render(wrench, frame); }
   [[nodiscard]] const Wrench& rendered() const override { return inner_->rendered(); }
   [[nodiscard]] double duration() const override { return inner_->duration(); }
   [[nodiscard]] double travel() const override { return inner_->travel(); }
   [[nodiscard]] bool driven() const override { return inner_->driven(); }
+  [[nodiscard]] Workspace workspace() const override { return inner_->workspace(); }
+  void carry(const HandleLoad& load) override { inner_->carry(load); }
+  void declare(Columns& columns) const override { inner_->declare(columns); }
+  void report(DeviceNotes& notes) override { inner_->report(notes); }
 
  private:
   std::shared_ptr<Device> inner_;

@@ -70,17 +70,20 @@ class HandDevice final : public Device {
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
   [[nodiscard]] const Wrench& rendered() const override { return felt_; }
   [[nodiscard]] bool driven() const override { return true; }
-  void render(const Wrench& wrench, double) override { felt_ = wrench; }
+  void render(const Wrench& wrench, const DeviceFrame&) override { felt_ = wrench; }
+  void carry(const HandleLoad& load) override { load_ = load; }
+  [[nodiscard]] std::string described() const override { return hand_.name + " (an operator)"; }
 
-  void sample(std::uint64_t frame, double t, double dt) override {
-    VERISIM_ASSERT(std::isfinite(t));
-    VERISIM_ASSERT(t >= last_t_);
-    VERISIM_ASSERT(is_positive(dt));
-    last_t_ = t;
-    if (frame > 0) {
-      walk(dt);
-      pull(aimed(t), dt);
+  void sample(const DeviceFrame& frame) override {
+    VERISIM_ASSERT(std::isfinite(frame.t));
+    VERISIM_ASSERT(frame.t >= last_t_);
+    VERISIM_ASSERT(is_positive(frame.dt));
+    last_t_ = frame.t;
+    if (frame.number > 0) {
+      walk(frame.dt);
+      pull(aimed(frame.t), frame.dt);
     }
+    reading_.velocity = frame.number > 0 ? velocity_between(reading_.handle, {x_, q_}, frame.dt) : Twist();
     reading_.raw = reading_.handle = {x_, q_};
   }
 
@@ -171,10 +174,16 @@ class HandDevice final : public Device {
   }
 
   /// The hand's own impedance towards the aim, and what it feels. Backward Euler: stable for any stiffness and mass.
+  /// The handle's friction is part of the same step: it takes what momentum there is, and never turns it round.
   void pull(const Pose& aim, double dt) {
     const HandDescription& h = hand_;
-    v_ = (h.mass * v_ + dt * (h.stiffness * (aim.position - x_) + felt_.force)) /
-         (h.mass + dt * h.damping + dt * dt * h.stiffness);
+    const double mass = h.mass + load_.mass;
+    Vector3d momentum = mass * v_ + dt * (h.stiffness * (aim.position - x_) + felt_.force);
+    if (load_.friction > 0) {
+      const double length = momentum.norm();
+      momentum *= length > 0 ? std::max(0.0, 1 - dt * load_.friction / length) : 0;
+    }
+    v_ = momentum / (mass + dt * h.damping + dt * dt * h.stiffness);
     x_ += dt * v_;
     keep_within_reach();
     const Vector3d e = vector_from_rotation(aim.rotation * q_.conjugate());
@@ -208,6 +217,7 @@ class HandDevice final : public Device {
   Quaterniond q_;
   DeviceReading reading_;
   Wrench felt_;
+  HandleLoad load_;
 };
 
 void require(bool fine, const HandDescription& hand, const char* what) {

@@ -23,10 +23,14 @@ class ReplayDevice final : public Device {
 
   [[nodiscard]] const std::string& name() const override { return name_; }
 
-  void sample(std::uint64_t, double t, double dt) override {
+  [[nodiscard]] std::string described() const override { return name_ + " (a recorded trace)"; }
+
+  void sample(const DeviceFrame& frame) override {
+    const double t = frame.t;
     VERISIM_ASSERT(std::isfinite(t));
     VERISIM_ASSERT(t >= last_t_);
-    VERISIM_ASSERT(is_positive(dt));
+    VERISIM_ASSERT(is_positive(frame.dt));
+    const Pose before_this = reading_.handle;
     last_t_ = t;
     const auto& times = samples_.t;
     while (next_ < times.size() && times[next_] <= t + kSimultaneous) ++next_;
@@ -41,10 +45,11 @@ class ReplayDevice final : public Device {
       reading_.handle = {a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s)};
     }
     reading_.raw = reading_.handle;
+    reading_.velocity = frame.number == 0 ? Twist() : velocity_between(before_this, reading_.handle, frame.dt);
     reading_.button = samples_.button.empty() || samples_.button[before] != 0;
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
-  void render(const Wrench& wrench, double) override { rendered_ = wrench; }
+  void render(const Wrench& wrench, const DeviceFrame&) override { rendered_ = wrench; }
   [[nodiscard]] const Wrench& rendered() const override { return rendered_; }
   [[nodiscard]] double duration() const override { return samples_.t.back(); }
   [[nodiscard]] double travel() const override { return travel_; }

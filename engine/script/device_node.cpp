@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/error.hpp"
+#include "engine/device/filters.hpp"
 #include "engine/device/sources.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/script_state.hpp"
@@ -61,7 +62,7 @@ DevicePointer new_device(lua_State* L, Fields& fields, const char* default_name)
 
 DevicePointer wrapped_device(lua_State* L, Fields& fields, const char* word) {
   check_building(L, word);
-  fields.push_child(1);
+  if (!fields.push("device")) fields.push_child(1);
   DevicePointer inner = device_at(L, lua_gettop(L), fmt::format("{}: the device", word));
   lua_pop(L, 1);
   int length = 0;
@@ -76,6 +77,20 @@ DevicePointer new_filter(lua_State* L, DevicePointer inner) {
   auto node = std::make_shared<DeviceNode>();
   node->place = where(L);
   node->inner = std::move(inner);
+  return node;
+}
+
+void record_once(lua_State* L, DeviceNode& filter, const char* word, const char* what) {
+  for (const DeviceNode* node = filter.inner.get(); node != nullptr; node = node->inner.get())
+    if (node->records != nullptr && std::string_view(node->records) == what)
+      raise(L, "{}: there is {} around this device already", word, what);
+  filter.records = what;
+}
+
+DevicePointer scaled_device(lua_State* L, DevicePointer inner, double factor) {
+  if (factor == 1) return inner;
+  DevicePointer node = new_filter(L, std::move(inner));
+  node->make = [factor](const DeviceMaking& making) { return make_scale(making.inner, factor); };
   return node;
 }
 

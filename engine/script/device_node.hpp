@@ -31,6 +31,7 @@ struct DeviceNode {
   std::string place;                  ///< FILE:LINE of the word, for later errors
   bool drivable = false;              ///< hardware: a source may be its inner node, by operator= or by --bind
   std::shared_ptr<DeviceNode> inner;  ///< filters: what they wrap; hardware: what drives it, or null
+  const char* records = nullptr;      ///< filters: what of theirs is recorded, and so may be in a chain once
   DeviceFactory make;
   std::shared_ptr<Device> device;  ///< null until make_device
 
@@ -52,10 +53,15 @@ void check_building(lua_State* L, const char* word);
 /// A source, or hardware if the word sets `drivable`, with the name= of `fields`. The word sets `make`.
 /// @pre default_name is not empty
 [[nodiscard]] DevicePointer new_device(lua_State* L, Fields& fields, const char* default_name);
-/// The device that a filter's word is called with: word{ device, … }. Raises for too many filters around one device.
+/// The device that a filter's word is called with: word{ device, … } or word{ device = device, … }. Raises for too many
+/// filters around one device.
 [[nodiscard]] DevicePointer wrapped_device(lua_State* L, Fields& fields, const char* word);
 /// The word sets `make`. @pre inner is not null
 [[nodiscard]] DevicePointer new_filter(lua_State* L, DevicePointer inner);
+/// Says of a filter what it is, and raises if there is such a one in its chain already.
+void record_once(lua_State* L, DeviceNode& filter, const char* word, const char* what);
+/// `inner` itself for a factor of 1.
+[[nodiscard]] DevicePointer scaled_device(lua_State* L, DevicePointer inner, double factor);
 
 /// Of a device that replays a haptic trace: Devices.Replay, and what --bind drives hardware by. Reads the trace at
 /// once. @pre max_gap is above 0

@@ -36,6 +36,7 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
   add_body_words(L);
   add_brep_words(L);
   add_device_words(L);
+  add_filter_words(L);
   add_wii_words(L);
   add_simulation_words(L);
   add_action_words(L);

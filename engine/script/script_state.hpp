@@ -150,7 +150,8 @@ void add_scene_words(lua_State* L);       ///< defineSimulationParameters, addOb
 void add_node_words(lua_State* L);        ///< Model, modelParts, Transform, Group, MatrixTransform, Solid
 void add_body_words(lua_State* L);        ///< what addObject returns
 void add_brep_words(lua_State* L);        ///< FeatureSet, BoundaryFeature, Plane, Cylinder …
-void add_device_words(lua_State* L);      ///< Devices, filters, addDevice, grasp
+void add_device_words(lua_State* L);      ///< Devices, addDevice, grasp
+void add_filter_words(lua_State* L);      ///< what wraps devices: placement, bubble, navigation
 void add_wii_words(lua_State* L);         ///< WiiHead
 void add_simulation_words(lua_State* L);  ///< simulation, CollisionCounter
 void add_action_words(lua_State* L);      ///< Actions, runbuf

@@ -1,4 +1,4 @@
-// Devices, the filters that wrap them, and grasps.
+// Devices and grasps.
 #include <cmath>
 
 #include "engine/device/hardware.hpp"
@@ -15,14 +15,26 @@ namespace {
 constexpr double kOmniScale = 20;     // SPARTA's default for the Phantom Omni
 constexpr double kVirtuoseScale = 1;  // and for the Virtuose
 
-DevicePointer scaled_device(lua_State* L, DevicePointer inner, double factor) {
-  if (factor == 1) return inner;
-  DevicePointer node = new_filter(L, std::move(inner));
-  node->make = [factor](const DeviceMaking& making) { return make_scale(making.inner, factor); };
-  return node;
+// --- hardware -------------------------------------------------------------------------------------------------------
+
+double not_negative(lua_State* L, Fields& fields, const char* name, double otherwise) {
+  const double value = fields.number(name, otherwise);
+  if (value < 0) raise(L, "{} is {:g} but must not be negative", fields.name_of(name), value);
+  return value;
 }
 
-// --- hardware -------------------------------------------------------------------------------------------------------
+/// What of a model a scene may switch off, on, or set.
+void read_hardware(lua_State* L, Fields& fields, HardwareDescription& d) {
+  d.forces = fields.boolean("forces").value_or(true);
+  d.resolution = not_negative(L, fields, "resolution", d.resolution);
+  d.force_max = fields.positive("peakForce").value_or(d.force_max);
+  d.torque_max = not_negative(L, fields, "peakTorque", d.torque_max);
+  d.stops = fields.boolean("stops").value_or(d.stops);
+  d.rate = not_negative(L, fields, "rate", d.rate);
+  d.delay = not_negative(L, fields, "delay", d.delay);
+  d.load.mass = not_negative(L, fields, "mass", d.load.mass);
+  d.load.friction = not_negative(L, fields, "friction", d.load.friction);
+}
 
 int hardware(lua_State* L, const char* word, HardwareDescription description, double scale,
              std::initializer_list<const char*> without_effect) {
@@ -30,7 +42,7 @@ int hardware(lua_State* L, const char* word, HardwareDescription description, do
   Fields fields(L, 1, word);
   DevicePointer node = new_device(L, fields, description.name.c_str());
   node->drivable = true;
-  description.forces = fields.boolean("forces").value_or(true);
+  read_hardware(L, fields, description);
   scale = fields.positive("scale").value_or(scale);
   if (fields.push("operator")) {
     node->inner = device_at(L, lua_gettop(L), fields.name_of("operator"));
@@ -58,6 +70,14 @@ int phantom(lua_State* L) {
 int virtuose(lua_State* L) {
   return hardware(L, "Devices.Haption.Virtuose6D3545", virtuose_6d("virtuose"), kVirtuoseScale,
                   {"ipaddress", "hardwareForceScale", "torqueScale", "indexType"});
+}
+
+int touch(lua_State* L) {
+  return hardware(L, "Devices.Geomagic.Touch", geomagic_touch("touch"), kOmniScale, {});
+}
+
+int ideal(lua_State* L) {
+  return hardware(L, "Devices.Ideal", ideal_device("ideal"), 1, {});
 }
 
 // --- sources --------------------------------------------------------------------------------------------------------
@@ -109,12 +129,6 @@ void read_path(lua_State* L, Fields& fields, HandDescription& hand) {
   lua_pop(L, 1);
 }
 
-double not_negative(lua_State* L, Fields& fields, const char* name, double otherwise) {
-  const double value = fields.number(name, otherwise);
-  if (value < 0) raise(L, "{} is {:g} but must not be negative", fields.name_of(name), value);
-  return value;
-}
-
 // A muscle that is given another stiffness or mass stays critically damped unless its damping is given too.
 void read_impedance(lua_State* L, Fields& fields, HandDescription& hand) {
   hand.mass = fields.positive("mass").value_or(hand.mass);
@@ -156,29 +170,7 @@ int hand_device(lua_State* L) {
   return 1;
 }
 
-// --- filters and the scene ------------------------------------------------------------------------------------------
-
-int translate_device(lua_State* L) {
-  Fields fields(L, 1, "translateDevice");
-  DevicePointer node = new_filter(L, wrapped_device(L, fields, "translateDevice"));
-  const auto translation = fields.vector("translation");
-  if (!translation)
-    raise(L, "translateDevice needs translation: translateDevice{{ device, translation = {{x, y, z}} }}");
-  fields.finish(true);
-  node->make = [by = *translation](const DeviceMaking& making) { return make_translate(making.inner, by); };
-  push(L, node);
-  return 1;
-}
-
-int scale_device(lua_State* L) {
-  Fields fields(L, 1, "scaleDevice");
-  DevicePointer inner = wrapped_device(L, fields, "scaleDevice");
-  const auto factor = fields.positive("scale");
-  if (!factor) raise(L, "scaleDevice needs scale: scaleDevice{{ device, scale = 4 }}");
-  fields.finish(true);
-  push(L, scaled_device(L, std::move(inner), *factor));
-  return 1;
-}
+// --- the scene --------------------------------------------------------------------------------------------------
 
 int add_device(lua_State* L) {
   check_building(L, "addDevice");
@@ -261,8 +253,11 @@ int device_member(lua_State* L) {
   return 1;
 }
 
+/// While it runs, its whole chain.
 int device_text(lua_State* L) {
-  push_text(L, fmt::format("device '{}'", innermost(*device_at(L, 1, "a device")).name));
+  const DevicePointer node = device_at(L, 1, "a device");
+  const Device* device = running(L, *node);
+  push_text(L, device != nullptr ? device->described() : fmt::format("device '{}'", innermost(*node).name));
   return 1;
 }
 
@@ -280,16 +275,17 @@ void add_device_words(lua_State* L) {
   lua_newtable(L);
   set_function<virtuose, Charge::call>(L, "Virtuose6D3545");
   lua_setfield(L, -2, "Haption");
+  lua_newtable(L);
+  set_function<touch, Charge::call>(L, "Touch");
+  lua_setfield(L, -2, "Geomagic");
+  set_function<ideal, Charge::call>(L, "Ideal");
   set_function<replay, Charge::call>(L, "Replay");
   set_function<hand_device, Charge::call>(L, "Hand");
   lua_setglobal(L, "Devices");
-  set_global<translate_device, Charge::call>(L, "translateDevice");
-  set_global<scale_device, Charge::call>(L, "scaleDevice");
   set_global<add_device, Charge::call>(L, "addDevice");
   set_global<grasp, Charge::call>(L, "grasp");
   set_global<release, Charge::call>(L, "release");
-  // SPARTA's words before its version 3.
-  set_global<translate_device, Charge::call>(L, "translateManipulator");
+  // SPARTA's word before its version 3.
   set_global<add_device, Charge::call>(L, "addManipulator");
 }
 

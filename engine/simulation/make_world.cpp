@@ -193,7 +193,10 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
   choose_integrator(scene, world, events);
   check_gravity(world.parameters, events);
   check_names(scene);
-  for (const auto& device : scene.devices) world.hands.emplace_back().device = device;
+  for (const auto& device : scene.devices) {
+    world.hands.emplace_back().device = device;
+    events.push_back({0, "device", device->described()});
+  }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));
   return world;
 }

@@ -29,6 +29,7 @@ void declare_device(const Device& device, Columns& columns) {
               [&device] { return device.reading().raw; });
   columns.add(path + "/wrench", "N, N m", "what the hardware is told to render, about the handle",
               [&device] { return device.rendered(); });
+  device.declare(columns);
 }
 
 std::uint32_t contacts_of(const Stages& stages, std::size_t l) {

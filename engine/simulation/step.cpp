@@ -59,7 +59,8 @@ void Simulation::step() {
   s.sinking.watch(world, s.contacts, s.reactions, notes);
   s.pair_energy.watch(world, s.contacts, s.exact, s.reactions, s.motion, notes);
   timer.done(Stage::motion);
-  render(world, s.response, s.motion);  // coupling wrench -> what the hardware is told to render
+  // coupling wrench -> what the hardware is told to render
+  render(world, s.contacts, s.exact, s.response, s.motion, notes);
   timer.done(Stage::render);
   ++world.frame;
   for (const auto& companion : world.companions) companion->advance(world.time());

@@ -13,6 +13,7 @@
 #include "engine/base/companion.hpp"
 #include "engine/constraint/entities.hpp"
 #include "engine/contact/mesh_query.hpp"
+#include "engine/device/collision_start.hpp"
 #include "engine/device/device.hpp"
 #include "engine/dynamics/body.hpp"
 #include "engine/dynamics/coupling.hpp"
@@ -57,13 +58,16 @@ struct Link {
   std::size_t number = kNone;  ///< in the order of first meetings; kNone: made in advance. Simulation::prepare
 };
 
-/// A device and what it holds. stages/grasping writes it.
+/// A device and what it holds. stages/grasping writes it; the collisions stages/rendering.
 struct Hand {
   std::shared_ptr<Device> device;
   std::size_t body = kNone;
-  Pose X_HB;               ///< body in handle coordinates, as grasped
-  bool by_script = false;  ///< grasp(): held whatever the button says
-  Pose handle_before;      ///< one frame ago
+  Pose X_HB;                      ///< body in handle coordinates, as grasped
+  bool by_script = false;         ///< grasp(): held whatever the button says
+  Pose handle_before;             ///< one frame ago
+  std::uint32_t collisions = 0;   ///< contacts of the body that it holds
+  bool collision_starts = false;  ///< in the same frame
+  CollisionStart detector;
 };
 
 struct World {

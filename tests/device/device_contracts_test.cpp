@@ -4,7 +4,11 @@
 
 #include <limits>
 
+#include "engine/device/bubble.hpp"
+#include "engine/device/bump.hpp"
+#include "engine/device/filters.hpp"
 #include "engine/device/hardware.hpp"
+#include "engine/device/passivity_filter.hpp"
 #include "engine/device/sources.hpp"
 #include "tests/support/broken.hpp"
 #include "tests/support/refusal.hpp"
@@ -24,20 +28,26 @@ std::shared_ptr<Device> hand() {
 TEST(DeviceDeathTest, WrapsAnother) {
   EXPECT_BROKEN(make_scale(nullptr, 2), "inner != nullptr");
   EXPECT_BROKEN(make_translate(nullptr, {0, 0, 0}), "inner != nullptr");
+  EXPECT_BROKEN(make_rotate(nullptr, Quaterniond::Identity()), "inner != nullptr");
+  EXPECT_BROKEN(make_bubble(nullptr, {}), "inner != nullptr");
+  EXPECT_BROKEN(make_carried(nullptr, std::make_shared<Navigator>()), "inner != nullptr");
+  EXPECT_BROKEN(make_carried(hand(), nullptr), "navigator != nullptr");
+  EXPECT_BROKEN(make_bump(nullptr, {}), "inner != nullptr");
+  EXPECT_BROKEN(make_passivity_filter(nullptr, {}), "inner != nullptr");
 }
 
 TEST(DeviceDeathTest, GoesForwardInTime) {
   const auto replay = make_replay("omni", {{0, 1}, {{}, {}}, {}});
-  replay->sample(0, 0.5, kStep);
-  replay->sample(1, 0.5, kStep);
-  EXPECT_BROKEN(replay->sample(2, 0.4, kStep), "t >= last_t_");
-  EXPECT_BROKEN(replay->sample(2, kNaN, kStep), "std::isfinite(t)");
-  EXPECT_BROKEN(replay->sample(2, 0.5, 0), "is_positive(dt)");
+  replay->sample({0, 0.5, kStep});
+  replay->sample({1, 0.5, kStep});
+  EXPECT_BROKEN(replay->sample({2, 0.4, kStep}), "t >= last_t_");
+  EXPECT_BROKEN(replay->sample({2, kNaN, kStep}), "std::isfinite(t)");
+  EXPECT_BROKEN(replay->sample({2, 0.5, 0}), "is_positive(frame.dt)");
   const auto moved = hand();
-  moved->sample(0, 0.5, kStep);
-  EXPECT_BROKEN(moved->sample(1, 0.4, kStep), "t >= last_t_");
-  EXPECT_BROKEN(hand()->sample(0, kNaN, kStep), "std::isfinite(t)");
-  EXPECT_BROKEN(hand()->sample(0, 0, 0), "is_positive(dt)");
+  moved->sample({0, 0.5, kStep});
+  EXPECT_BROKEN(moved->sample({1, 0.4, kStep}), "frame.t >= last_t_");
+  EXPECT_BROKEN(hand()->sample({0, kNaN, kStep}), "std::isfinite(frame.t)");
+  EXPECT_BROKEN(hand()->sample({0, 0, 0}), "is_positive(frame.dt)");
 }
 
 TEST(Hardware, RefusesAHomeThatIsNoPlacement) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/device/filters.hpp"
 #include "engine/device/hardware.hpp"
 #include "engine/device/sources.hpp"
 #include "tests/support/refusal.hpp"
@@ -26,11 +27,11 @@ std::shared_ptr<Device> moving() {
 TEST(Scale, MultipliesPositionsAndDividesForces) {
   const auto source = moving();
   const auto device = make_scale(source, 4);
-  device->sample(1, 1, 1);
+  device->sample({1, 1, 1});
   EXPECT_EQ(device->reading().handle.position, Vector3d(0.04, 0.08, 0.32));
   EXPECT_EQ(device->reading().handle.rotation.coeffs(), source->reading().handle.rotation.coeffs());
   EXPECT_EQ(device->reading().raw.position, Vector3d(0.01, 0.02, 0.08)) << "the hardware's own report stays";
-  device->render({{8, 4, 2}, {1, 2, 3}}, 1e-3);
+  device->render({{8, 4, 2}, {1, 2, 3}}, {1, 1, 1e-3});
   EXPECT_EQ(device->rendered().force, Vector3d(2, 1, 0.5));
   EXPECT_EQ(device->rendered().torque, Vector3d(1, 2, 3));
   EXPECT_EQ(device->travel(), 4 * source->travel());
@@ -41,10 +42,10 @@ TEST(Scale, MultipliesPositionsAndDividesForces) {
 TEST(Translate, MovesTheHandleAndNothingElse) {
   const auto source = moving();
   const auto device = make_translate(source, {1, 2, 3});
-  device->sample(1, 1, 1);
+  device->sample({1, 1, 1});
   EXPECT_EQ(device->reading().handle.position, Vector3d(1.01, 2.02, 3.08));
   EXPECT_EQ(device->reading().raw.position, Vector3d(0.01, 0.02, 0.08));
-  device->render({{8, 4, 2}, {1, 2, 3}}, 1e-3);
+  device->render({{8, 4, 2}, {1, 2, 3}}, {1, 1, 1e-3});
   EXPECT_EQ(device->rendered().force, Vector3d(8, 4, 2));
   EXPECT_EQ(device->travel(), source->travel());
 }
@@ -58,8 +59,8 @@ TEST(Filters, SayWhereTheHandleIsBeforeTheFirstFrame) {
 TEST(Filters, StackInTheOrderInWhichTheyWrap) {
   const auto scaled_last = make_scale(make_translate(moving(), {1, 0, 0}), 2);
   const auto moved_last = make_translate(make_scale(moving(), 2), {1, 0, 0});
-  scaled_last->sample(0, 0, 1);
-  moved_last->sample(0, 0, 1);
+  scaled_last->sample({0, 0, 1});
+  moved_last->sample({0, 0, 1});
   EXPECT_LE((scaled_last->reading().handle.position - Vector3d(2.02, 0.04, 0.06)).norm(), tolerance(1e-15));
   EXPECT_LE((moved_last->reading().handle.position - Vector3d(1.02, 0.04, 0.06)).norm(), tolerance(1e-15));
 }
@@ -67,9 +68,9 @@ TEST(Filters, StackInTheOrderInWhichTheyWrap) {
 // Forces are limited by the hardware after the scale divided them: 12 N through a scale of 4 are 3 N, under its 3.3 N.
 TEST(Filters, ForcesReachTheHardwareScaled) {
   const auto device = make_scale(make_hardware(phantom_omni("omni"), moving()), 4);
-  device->render({{0, 0, 12}, {0, 0, 0}}, 1e-3);
+  device->render({{0, 0, 12}, {0, 0, 0}}, {1, 1, 1e-3});
   EXPECT_EQ(device->rendered().force, Vector3d(0, 0, 3));
-  device->render({{0, 0, 20}, {0, 0, 0}}, 1e-3);
+  device->render({{0, 0, 20}, {0, 0, 0}}, {1, 1, 1e-3});
   EXPECT_LE((device->rendered().force - Vector3d(0, 0, 3.3)).norm(), tolerance(4 * 0x1p-52));
 }
 

@@ -31,8 +31,8 @@ struct Living {
   [[nodiscard]] const Pose& pose() const { return device->reading().handle; }
   void frames(int n, const Wrench& felt = {}) {
     for (int i = 0; i < n; ++i, ++frame) {
-      device->sample(frame, static_cast<double>(frame) * kStep, kStep);
-      device->render(felt, kStep);
+      device->sample({frame, static_cast<double>(frame) * kStep, kStep});
+      device->render(felt, {frame, static_cast<double>(frame) * kStep, kStep});
     }
   }
   /// Frames until the hand is within `near` of x; -1 if that takes more than `most`. A wall at x = `wall` holds it up.
@@ -86,8 +86,8 @@ TEST(Hand, StaysFiniteAtAnyStiffnessMassAndStep) {
         description.stiffness = description.angular_stiffness = stiffness;
         Living hand(description);
         for (std::uint64_t i = 0; i < 2000; ++i) {
-          hand.device->sample(i, static_cast<double>(i) * dt, dt);
-          hand.device->render({{3, -3, 3}, {0.1, 0, -0.1}}, dt);
+          hand.device->sample({i, static_cast<double>(i) * dt, dt});
+          hand.device->render({{3, -3, 3}, {0.1, 0, -0.1}}, {i, static_cast<double>(i) * dt, dt});
         }
         ASSERT_TRUE(hand.pose().position.allFinite());
         ASSERT_LE(std::abs(hand.pose().rotation.norm() - 1), tolerance(4 * 0x1p-53));

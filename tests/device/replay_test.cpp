@@ -27,7 +27,7 @@ HapticSamples three() {
 }
 
 DeviceReading at(Device& device, double t) {
-  device.sample(0, t, 1e-3);
+  device.sample({0, t, 1e-3});
   return device.reading();
 }
 
@@ -101,7 +101,7 @@ TEST(Replay, KnowsItsLengthItsReachAndWhatItWasToldToRender) {
   EXPECT_EQ(replay->duration(), 0.3);
   EXPECT_LE(std::abs(replay->travel() - std::sqrt(1 + 4 + 49)), tolerance(4 * 0x1p-51));
   EXPECT_TRUE(replay->driven());
-  replay->render({{1, 2, 3}, {4, 5, 6}}, 1e-3);
+  replay->render({{1, 2, 3}, {4, 5, 6}}, {0, 0, 1e-3});
   EXPECT_EQ(replay->rendered().torque, Vector3d(4, 5, 6));
 }
 

@@ -15,14 +15,15 @@ namespace {
 // Step 1: the classes (in engine/device: a file of their own).
 class Circle final : public Device {
  public:
-  Circle(std::string name, double radius) : name_(std::move(name)), radius_(radius) { sample(0, 0, 0); }
+  Circle(std::string name, double radius) : name_(std::move(name)), radius_(radius) { sample({}); }
   [[nodiscard]] const std::string& name() const override { return name_; }
-  void sample(std::uint64_t /*frame*/, double t, double /*dt*/) override {
-    reading_.handle.position = {radius_ * pinned::cos(t), radius_ * pinned::sin(t), 0};
+  [[nodiscard]] std::string described() const override { return name_ + " (a circle)"; }
+  void sample(const DeviceFrame& frame) override {
+    reading_.handle.position = {radius_ * pinned::cos(frame.t), radius_ * pinned::sin(frame.t), 0};
     reading_.raw = reading_.handle;
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
-  void render(const Wrench& wrench, double /*dt*/) override { felt_ = wrench; }
+  void render(const Wrench& wrench, const DeviceFrame&) override { felt_ = wrench; }
   [[nodiscard]] const Wrench& rendered() const override { return felt_; }
   [[nodiscard]] double duration() const override { return 0; }
   [[nodiscard]] double travel() const override { return 2 * radius_; }
@@ -38,15 +39,15 @@ class Circle final : public Device {
 class Mirror final : public ForwardingDevice {
  public:
   explicit Mirror(std::shared_ptr<Device> inner) : ForwardingDevice(std::move(inner)) { mirror(); }
-  void sample(std::uint64_t frame, double t, double dt) override {
-    ForwardingDevice::sample(frame, t, dt);
+  void sample(const DeviceFrame& frame) override {
+    ForwardingDevice::sample(frame);
     mirror();
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
-  void render(const Wrench& wrench, double dt) override {
+  void render(const Wrench& wrench, const DeviceFrame& frame) override {
     Wrench mirrored = wrench;
     mirrored.force.x() = -wrench.force.x();
-    ForwardingDevice::render(mirrored, dt);
+    ForwardingDevice::render(mirrored, frame);
   }
 
  private:
@@ -133,7 +134,7 @@ TEST(AddingADevice, MakesAFilterThatStacksWithTheOthers) {
       "})");
   EXPECT_EQ(scene.devices.at(0)->name(), "c");
   EXPECT_EQ(scene.devices[0]->reading().handle.position, Vector3d(0.5, 0, 0));
-  scene.devices[0]->render({{3, 2, 1}, Vector3d::Zero()}, 1e-3);
+  scene.devices[0]->render({{3, 2, 1}, Vector3d::Zero()}, {0, 0, 1e-3});
   EXPECT_EQ(scene.devices[0]->rendered().force, Vector3d(-3, 2, 1));
 }
 

@@ -21,11 +21,12 @@ class LostDevice final : public Device {
  public:
   explicit LostDevice(std::uint64_t lost_at) : lost_at_(lost_at) {}
   [[nodiscard]] const std::string& name() const override { return name_; }
-  void sample(std::uint64_t frame, double /*t*/, double /*dt*/) override {
-    if (frame == lost_at_) reading_.handle.position.y() = std::numeric_limits<double>::quiet_NaN();
+  [[nodiscard]] std::string described() const override { return name_; }
+  void sample(const DeviceFrame& frame) override {
+    if (frame.number == lost_at_) reading_.handle.position.y() = std::numeric_limits<double>::quiet_NaN();
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
-  void render(const Wrench& wrench, double /*dt*/) override { rendered_ = wrench; }
+  void render(const Wrench& wrench, const DeviceFrame&) override { rendered_ = wrench; }
   [[nodiscard]] const Wrench& rendered() const override { return rendered_; }
   [[nodiscard]] double duration() const override { return 0; }
   [[nodiscard]] double travel() const override { return 1; }

@@ -8,6 +8,11 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "engine/device/bubble.hpp"
+#include "engine/device/bump.hpp"
+#include "engine/device/filters.hpp"
+#include "engine/device/hardware.hpp"
+#include "engine/device/passivity_filter.hpp"
 #include "engine/wii/head.hpp"
 #include "tests/simulation/hybrid_scenes.hpp"
 #include "tests/simulation/tray_scene.hpp"
@@ -156,6 +161,27 @@ TEST(StepIsQuiet, WhileItHasSomethingToSay) {
   const Quiet quiet = run_counted(simulation);
   EXPECT_GE(quiet.events, 15U) << "nothing was said: this test would prove nothing";
   EXPECT_EQ(quiet.allocations, 0U);
+}
+
+// All that hardware models and filters do, with what they have to say.
+TEST(StepIsQuiet, WhileADeviceGoesThroughEveryFilter) {
+  Scene scene = scenes::pin_in_hole();
+  HardwareDescription omni = phantom_omni("omni");
+  omni.stops = true;
+  omni.rate = 500;
+  omni.delay = 0.002;
+  omni.load = {0.05, 0.1};
+  BubbleDescription bubble;
+  bubble.radius = 0.02;
+  bubble.stops_in_collision = true;
+  const auto filtered = make_bubble(make_passivity_filter(make_hardware(omni, scene.devices[0]), {}), bubble);
+  scene.devices[0] =
+      make_bump(make_rotate(make_scale(filtered, 1.5), Quaterniond::Identity()), {.force = 2, .duration = 0.02});
+  Simulation simulation(std::move(scene), {});
+  const Quiet quiet = run_counted(simulation);
+  EXPECT_GE(quiet.events, 5U) << "nothing was said: this test would prove nothing";
+  EXPECT_EQ(quiet.allocations, 0U);
+  EXPECT_EQ(quiet.locks, 0U);
 }
 
 TEST(StepIsQuiet, WhileHeadsAreTracked) {

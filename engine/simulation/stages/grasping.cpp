@@ -37,7 +37,7 @@ void Grasping::sample(World& world) {
   for (Hand& hand : world.hands) {
     Device& device = *hand.device;
     hand.handle_before = device.reading().handle;
-    device.sample(world.frame, world.time(), world.dt);
+    device.sample({world.frame, world.time(), world.dt, hand.collisions, hand.collision_starts});
     const Pose& handle = device.reading().handle;
     if (!handle.position.allFinite() || !handle.rotation.coeffs().allFinite())
       fail(ErrorKind::diverged, "frame {}: the handle of device '{}' is not finite", world.frame, device.name());

@@ -17,15 +17,16 @@ struct Note {
   std::string (*text)(const World& world, const Note& note);
   std::size_t first = 0, second = 0;  ///< whom it is about: bodies, hands, as `text` takes them
   double a = 0, b = 0;                ///< what else `text` says
+  const char* detail = "";            ///< likewise; a literal
 };
 
 class Notes {
  public:
   /// Between frames. What a frame may have to say: three things of every body, one of every link, both ends of a grasp
-  /// of every hand and of the hand that it takes from, and what found no room.
+  /// of every hand and of the hand that it takes from, what devices report, and what found no room.
   void make_room(const World& world, std::size_t links) {
     constexpr std::size_t kOthers = 64;
-    notes_.reserve(3 * world.bodies.size() + links + 4 * world.hands.size() + kOthers);
+    notes_.reserve(3 * world.bodies.size() + links + (5 + DeviceNotes::kMax) * world.hands.size() + kOthers);
   }
   /// No allocation within that room.
   void add(const Note& note) {

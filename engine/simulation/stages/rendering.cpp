@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/error.hpp"
+
 namespace verisim {
 namespace {
 
@@ -28,15 +30,55 @@ Wrench felt(const Vector3d& handle, const Coupling& coupling, const CouplingTarg
   return {-force, -torque - arm.cross(force)};
 }
 
+/// Contacts of a body in this frame.
+std::uint32_t collisions_of(const World& world, const Contacts& contacts, const ExactResponse& exact,
+                            std::size_t body) {
+  std::uint32_t count = 0;
+  for (const std::size_t l : world.near_links)
+    if (world.links[l].first == body || world.links[l].second == body) count += contacts.count(l) + exact.count(l);
+  return count;
+}
+
+std::string text_of_collision(const World& world, const Note& note) {
+  return fmt::format("{} of {} starts to touch, in {} contacts", world.bodies[note.second].name,
+                     world.hands[note.first].device->name(), note.a);
+}
+std::string text_of_report(const World& world, const Note& note) {
+  return world.hands[note.first].device->name() + " " + note.detail;
+}
+
+void note_collision(const World& world, std::size_t h, Notes& notes) {
+  const Hand& hand = world.hands[h];
+  if (!hand.collision_starts) return;
+  notes.add({.time = world.time(),
+             .kind = "collision",
+             .text = text_of_collision,
+             .first = h,
+             .second = hand.body,
+             .a = static_cast<double>(hand.collisions)});
+}
+
 }  // namespace
 
-void render(const World& world, const Response& response, const Motion& motion) {
-  for (const Hand& hand : world.hands) {
+void render(World& world, const Contacts& contacts, const ExactResponse& exact, const Response& response,
+            const Motion& motion, Notes& notes) {
+  DeviceNotes reports;
+  for (std::size_t h = 0; h < world.hands.size(); ++h) {
+    Hand& hand = world.hands[h];
     Wrench wrench;
-    if (hand.body != kNone)
+    hand.collisions = 0;
+    if (hand.body != kNone) {
       wrench = felt(hand.device->reading().handle.position, world.bodies[hand.body].coupling,
                     response.loads(hand.body).target, motion.work(hand.body), world.dt);
-    hand.device->render(wrench, world.dt);
+      hand.collisions = collisions_of(world, contacts, exact, hand.body);
+    }
+    hand.collision_starts = hand.detector.update(world.time(), hand.collisions);
+    note_collision(world, h, notes);
+    hand.device->render(wrench, {world.frame, world.time(), world.dt, hand.collisions, hand.collision_starts});
+    reports.clear();
+    hand.device->report(reports);
+    for (const DeviceNotes::Note& report : reports)
+      notes.add({.time = world.time(), .kind = report.kind, .text = text_of_report, .first = h, .detail = report.text});
   }
 }
 

@@ -1,10 +1,15 @@
-// What the hands feel: coupling wrench to what the hardware is told to render.
+// What the hands feel: coupling wrench to what the hardware is told to render, and what touches what they hold.
 #pragma once
 
+#include "engine/simulation/stages/contacts.hpp"
+#include "engine/simulation/stages/exact_response.hpp"
 #include "engine/simulation/stages/motion.hpp"
+#include "engine/simulation/stages/notes.hpp"
 
 namespace verisim {
 
-void render(const World& world, const Response& response, const Motion& motion);
+/// Notes: collision, when one starts (CollisionStart), and what devices report.
+void render(World& world, const Contacts& contacts, const ExactResponse& exact, const Response& response,
+            const Motion& motion, Notes& notes);
 
 }  // namespace verisim
