@@ -115,7 +115,9 @@ class HandDevice final : public Device {
     }
     const Vector3d ahead = target().position + error_ - x_;
     const Vector3d leg = to.pose.position - hand_.path[from_].pose.position;
-    if (ahead.norm() > hand_.lead && ahead.dot(leg) >= 0) {  // a target that comes back towards the hand need not wait
+    // A target that comes back towards the hand need not wait.
+    notice(ahead.norm() > hand_.lead && ahead.dot(leg) >= 0, dt);
+    if (is_held_up_) {
       waited_ += dt;
       if (waited_ > hand_.patience && goal_ != from_) retry();
       return;
@@ -131,6 +133,14 @@ class HandDevice final : public Device {
       ++goal_;
     else if (hand_.repeat)
       goal_ = 0;
+  }
+
+  /// That the hand is held up, or free again, is known after the reaction time.
+  void notice(bool held_up, double dt) {
+    noticing_ = held_up == is_held_up_ ? 0 : noticing_ + dt;
+    if (held_up == is_held_up_ || noticing_ < hand_.reaction) return;
+    is_held_up_ = held_up;
+    noticing_ = 0;
   }
 
   /// Back to the waypoint before, with the place misjudged anew.
@@ -209,8 +219,8 @@ class HandDevice final : public Device {
   double last_t_ = -std::numeric_limits<double>::infinity();
   Vector3d error_, angular_error_;
   std::size_t from_ = 0, goal_ = 0;  ///< the leg that is walked
-  double along_ = 0, dwelling_ = 0, waited_ = 0;
-  bool withdrawing_ = false;
+  double along_ = 0, dwelling_ = 0, waited_ = 0, noticing_ = 0;
+  bool withdrawing_ = false, is_held_up_ = false;
   Vector3d x_, v_ = Vector3d::Zero(), w_ = Vector3d::Zero();
   Vector3d start_;    ///< where x_ started
   double reach_ = 0;  ///< m, travel(), computed once
@@ -235,6 +245,7 @@ std::shared_ptr<Device> make_hand(HandDescription hand) {
     require(is_not_negative(w.dwell), hand, "a waypoint's dwell must be finite and not negative");
   }
   require(is_positive(hand.mass) && is_positive(hand.inertia), hand, "mass and inertia must be finite and above 0");
+  require(is_not_negative(hand.reaction), hand, "reaction must be finite and not negative");
   require(is_not_negative(hand.stiffness) && is_not_negative(hand.damping), hand,
           "stiffness and damping must not be negative");
   require(is_not_negative(hand.angular_stiffness) && is_not_negative(hand.angular_damping), hand,

@@ -13,6 +13,9 @@ namespace {
 /// button must not come a frame late for it.
 constexpr double kSimultaneous = 1e-9;
 
+/// m/s and rad/s: no hand moves faster. A trace that does has lost samples, or its tracker jumped.
+constexpr double kFastest = 10, kFastestTurn = 60;
+
 class ReplayDevice final : public Device {
  public:
   ReplayDevice(std::string name, HapticSamples samples) : name_(std::move(name)), samples_(std::move(samples)) {
@@ -50,6 +53,14 @@ class ReplayDevice final : public Device {
   }
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
   void render(const Wrench& wrench, const DeviceFrame&) override { rendered_ = wrench; }
+  void report(DeviceNotes& notes) override {
+    const bool is_fast = reading_.velocity.linear.norm() > kFastest || reading_.velocity.angular.norm() > kFastestTurn;
+    if (is_fast && !was_fast_) notes.add("speed", "follows a trace that is faster than 10 m/s or 60 rad/s: it jumps");
+    was_fast_ = is_fast;
+    const bool has_ended = last_t_ > samples_.t.back() + kSimultaneous;
+    if (has_ended && !had_ended_) notes.add("trace", "has no more samples and holds the last");
+    had_ended_ = has_ended;
+  }
   [[nodiscard]] const Wrench& rendered() const override { return rendered_; }
   [[nodiscard]] double duration() const override { return samples_.t.back(); }
   [[nodiscard]] double travel() const override { return travel_; }
@@ -61,6 +72,7 @@ class ReplayDevice final : public Device {
   std::size_t next_ = 0;  ///< first sample later than the last t: time only goes forward
   double last_t_ = -std::numeric_limits<double>::infinity();
   double travel_ = 0;
+  bool was_fast_ = false, had_ended_ = false;
   DeviceReading reading_;
   Wrench rendered_;
 };

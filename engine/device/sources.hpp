@@ -50,6 +50,7 @@ struct HandDescription {
   double lead = std::numeric_limits<double>::infinity();  ///< m; the target waits while it is further ahead of the hand
   double patience =
       std::numeric_limits<double>::infinity();  ///< s; after so long a wait back to the waypoint before, and again
+  double reaction = 0;                          ///< s, until the hand knows that it is held up, or no longer
   double tremor = 0;                            ///< m rms, 8 to 12 Hz, each axis
   double angular_tremor = 0;                    ///< rad rms
   Vector3d error = Vector3d::Zero();            ///< m, added to every target: misjudged place

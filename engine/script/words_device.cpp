@@ -152,6 +152,7 @@ int hand_device(lua_State* L) {
   read_impedance(L, fields, hand);
   hand.lead = fields.positive("lead").value_or(hand.lead);
   hand.patience = fields.positive("patience").value_or(hand.patience);
+  hand.reaction = not_negative(L, fields, "reaction", hand.reaction);
   hand.tremor = not_negative(L, fields, "tremor", 0);
   hand.angular_tremor = not_negative(L, fields, "angularTremor", 0);
   hand.error = fields.vector("error").value_or(Vector3d::Zero());

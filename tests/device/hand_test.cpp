@@ -77,6 +77,25 @@ TEST(Hand, GivesWayByForceOverStiffness) {
   EXPECT_LE((vector_from_rotation(hand.pose().rotation) - Vector3d(0, 0.05, 0)).norm(), tolerance(1e-14));
 }
 
+// Held by something hard, a hand whose target may run 10 mm ahead pulls with 400 N/m times that; where it takes 0.2 s
+// to know, the target has gone on with 0.1 m/s meanwhile.
+TEST(Hand, NoticesAfterItsReactionTimeThatItIsHeldUp) {
+  for (const double reaction : {0.0, 0.05, 0.2}) {
+    HandDescription description = reaching({{place(0)}, {place(1), 0.1, 0}});
+    description.lead = 0.01;
+    description.reaction = reaction;
+    const auto hand = make_hand(description);
+    double pulls = 0;
+    for (std::uint64_t frame = 0; frame < 1500; ++frame) {
+      const DeviceFrame now{frame, static_cast<double>(frame) * kStep, kStep, 0, false};
+      hand->sample(now);
+      pulls = 1e5 * hand->reading().handle.position.x();
+      hand->render({{-pulls, 0, 0}, Vector3d::Zero()}, now);
+    }
+    EXPECT_NEAR(pulls, 400 * (0.01 + 0.1 * reaction), 400 * 0.0003) << reaction;
+  }
+}
+
 TEST(Hand, StaysFiniteAtAnyStiffnessMassAndStep) {
   for (const double stiffness : {0.0, 1.0, 1e12})
     for (const double mass : {1e-9, 0.15, 1e9})

@@ -193,7 +193,7 @@ TEST(Hardware, StopsAtItsWorkspaceAndSaysSo) {
 }
 
 TEST(Hardware, SaysWhenSaturationBeginsAndEnds) {
-  const auto omni = make_hardware(phantom_omni("omni"), still_at({}));
+  const auto omni = make_hardware(phantom_omni("omni"), steady());
   std::vector<std::string> said;
   for (std::uint64_t frame = 0; frame < 30; ++frame) {
     omni->sample(frame_at(frame));

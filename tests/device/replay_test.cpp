@@ -133,5 +133,28 @@ TEST(ReplayDeathTest, NeedsAPoseAndAButtonForEverySample) {
   EXPECT_DEATH((void)make_replay("omni", s), "broken promise");
 }
 
+std::vector<std::string> said_by(Device& device, std::uint64_t frames) {
+  std::vector<std::string> said;
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    device.sample({frame, 1e-3 * static_cast<double>(frame), 1e-3});
+    device.render({}, {frame, 1e-3 * static_cast<double>(frame), 1e-3});
+    DeviceNotes notes;
+    device.report(notes);
+    for (const auto& note : notes) said.push_back(fmt::format("{} {}", frame, note.kind));
+  }
+  return said;
+}
+
+// 10 m, or half a turn, between two samples 1 ms apart; the same way in 2 s is no jump.
+TEST(Replay, SaysThatItsTraceJumpsAndThatItEnds) {
+  const Pose far{{10, 0, 0}, Quaterniond::Identity()}, turned{Vector3d::Zero(), rotation_from_vector({0, 0, 3.14})};
+  for (const Pose& pose : {far, turned}) {
+    const auto jumps = make_replay("trace", {{0, 0.010, 0.011, 0.02}, {{}, {}, pose, pose}, {}});
+    EXPECT_EQ(said_by(*jumps, 30), (std::vector<std::string>{"11 speed", "21 trace"}));
+    const auto goes = make_replay("trace", {{0, 2}, {{}, pose}, {}});
+    EXPECT_EQ(said_by(*goes, 2000), std::vector<std::string>{});
+  }
+}
+
 }  // namespace
 }  // namespace verisim::replay_test
