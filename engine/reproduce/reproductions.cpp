@@ -11,6 +11,7 @@ std::span<const Reproduction> reproductions() {
       Reproduction{"R3", "collisions and cache misses", &r3_collisions},
       Reproduction{"R4", "recognition of a pair (table 7.1)", &r4_recognition},
       Reproduction{"R5", "blending and association", &r5_blending},
+      Reproduction{"R6", "the bubble's laws (figure 4.6)", &r6_bubble_laws},
       Reproduction{"R7", "trackable area and volume", &r7_coverage},
       Reproduction{"R9", "parts whose constraints conflict", &r9_conflicts},
   };

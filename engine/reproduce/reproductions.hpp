@@ -24,6 +24,7 @@ struct Reproduction {
 [[nodiscard]] std::vector<Row> r3_collisions(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r4_recognition(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r5_blending(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r6_bubble_laws(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r7_coverage(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r9_conflicts(const Workshop& workshop);
 

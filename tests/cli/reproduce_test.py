@@ -13,7 +13,7 @@ import h5py
 from program import ProgramTest, VERISIM
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-IDS = ["R1", "R2", "R3", "R4", "R5", "R7", "R9"]
+IDS = ["R1", "R2", "R3", "R4", "R5", "R6", "R7", "R9"]
 
 
 def processor_seconds():
@@ -74,6 +74,11 @@ class Reproduce(ProgramTest):
         self.assertAlmostEqual(volume["published"], 1.0850727, places=6)
         low, high = volume["interval_95"]
         self.assertGreater(volume["published"] - high, high - low)
+
+    def test_r6_rates_are_those_that_figure_4_6_was_drawn_from(self):
+        for row in self.rows("R6"):
+            self.assertAlmostEqual(row["ratio"], 1, delta=0.01, msg=row["what"])
+        self.assertIn("0.304 m/s", self.rows("R6")[0]["why"])
 
     def test_r1_counts_overruns_beside_those_of_an_empty_loop(self):
         share = self.rows("R1")[2]

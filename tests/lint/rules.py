@@ -28,7 +28,7 @@ MAY_INCLUDE = {
     "wii": "base",
     "vrpn": "base",
     "record": "base",
-    "reproduce": "base geometry record voxel constraint wii",
+    "reproduce": "base geometry record voxel constraint wii device",
     "simulation": "base geometry voxel contact constraint exact dynamics device robot record",
     "script": "base geometry device robot wii record simulation",
 }
