@@ -35,7 +35,8 @@ class HardwareDevice final : public Device {
     text += fmt::format("{} ({}", d.name, d.model);
     if (!d.forces) text += ", no forces";
     if (d.forces && std::isfinite(d.force_max)) text += fmt::format(", {} N", d.force_max);
-    if (d.forces && std::isfinite(d.torque_max)) text += fmt::format(", {} N m", d.torque_max);
+    if (d.forces && d.torque_max == 0) text += ", no torques";
+    if (d.forces && d.torque_max > 0 && std::isfinite(d.torque_max)) text += fmt::format(", {} N m", d.torque_max);
     if (d.resolution > 0) text += fmt::format(", steps of {} m", d.resolution);
     if (d.stops) text += ", stops";
     if (d.rate > 0) text += fmt::format(", {} Hz", d.rate);

@@ -1,0 +1,67 @@
+"""A device that nobody holds, a trace that is made for it, and what its bubble does with it: `scenarios/reach.lua`."""
+import os
+import unittest
+
+import h5py
+import numpy
+
+from program import SOURCE, ProgramTest
+
+SCENE = os.path.join(SOURCE, "scenarios", "reach.lua")
+
+
+class Devices(ProgramTest):
+    def run_reach(self, *options):
+        self.succeed("run", SCENE, "--quiet", "-o", "reach.h5", "--force", *options)
+        with h5py.File(self.path("reach.h5")) as f:
+            device = {name: f["state/device/omni/" + name][()] for name in f["state/device/omni"]}
+            return device, [(e["kind"].decode(), e["text"].decode()) for e in f["events"]], f["state/body/box/pose"][()]
+
+    def hold(self):
+        self.succeed("trace", "synth", "reach", "-o", self.path("reach.csv"), "--force", "--set", "to_x=0.07", "--set", "time=2",
+                     "--set", "wait=1")
+        return ["--bind", "omni=" + self.path("reach.csv")]
+
+    def test_without_a_trace_it_stays_at_home_and_says_so(self):
+        done = self.succeed("run", SCENE, "--duration", "0.1", "-o", "home.h5", "--force")
+        self.assertIn("device 'omni' is driven by nothing", done.stderr)
+
+    def test_a_bubble_carries_farther_than_the_device_reaches(self):
+        device, events, box = self.run_reach(*self.hold())
+        self.assertLessEqual(device["raw_pose"][:, 0].max(), 0.0701)  # and 0.7 m scaled
+        self.assertGreater(box[:, 0].max(), 1.8)
+        # The handle is the hardware's, scaled, and the bubble's centre.
+        handle = 10 * device["raw_pose"][:, :3] + device["bubble_center"]
+        self.assertLessEqual(numpy.abs(handle - device["handle_pose"][:, :3]).max(), 1e-12)
+        # Outside of 0.45 m, and there alone, it moves: its velocity is the centre's.
+        outside = numpy.linalg.norm(10 * device["raw_pose"][:, :3], axis=1) > 0.45
+        self.assertEqual((device["outside"] == 1).tolist(), outside.tolist())
+        moved = numpy.diff(device["bubble_center"], axis=0) / 1e-3
+        self.assertLessEqual(numpy.abs(moved - device["bubble_velocity"][:-1]).max(), 1e-9)
+        self.assertEqual(numpy.any(device["bubble_velocity"] != 0, axis=1).tolist(), outside.tolist())
+        kinds = [kind for kind, _ in events]
+        self.assertIn("collision", kinds)
+        self.assertIn(("device", "omni (a recorded trace), through omni (Phantom Omni, 3.3 N, no torques, steps of 5.5e-05 m), "
+                                 "scaled by 10, in a bubble of 0.45 m (peak-ring law, scale 1.5, 50 N/m)"), events)
+
+    def test_saturation_is_a_column_and_an_event_when_it_begins_and_ends(self):
+        device, events, _ = self.run_reach(*self.hold())
+        said = [text for kind, text in events if kind == "saturation"]
+        changes = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], device["saturated"].astype(int)])))
+        self.assertGreater(len(changes), 0)
+        self.assertEqual(len(said), len(changes))
+        force = numpy.linalg.norm(device["wrench"][:, :3], axis=1)
+        self.assertLessEqual(force.max(), 3.3 * (1 + 1e-12))
+        self.assertEqual((device["saturated"] == 1).tolist(), (force > 3.3 * (1 - 1e-12)).tolist())
+
+    def test_a_bubble_that_stops_in_collision_goes_no_farther(self):
+        ends = [self.run_reach(*self.hold(), "--set", "stop=" + stop)[0]["bubble_center"][:, 0].max() for stop in ("false", "true")]
+        self.assertGreater(ends[0], ends[1] + 0.05)
+
+    def test_its_runs_are_computed_again(self):
+        self.run_reach(*self.hold(), "--set", "stop=true", "--set", "bump=2")
+        self.succeed("replay", "reach.h5", "--verify")
+
+
+if __name__ == "__main__":
+    unittest.main()
