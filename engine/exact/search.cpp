@@ -8,6 +8,11 @@
 namespace verisim::exact {
 namespace {
 
+/// A box of the mover's tree in the coordinates of the base: the box along their axes around it.
+struct PlacedBox {
+  Vector3d center, half;
+};
+
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
@@ -17,7 +22,8 @@ class Search {
 
  private:
   template <typename Test>
-  void descend(const BoxTree& base, NodePairs& stack, Test&& test) const;
+  void descend(const BoxTree& base, NodePairs& stack, Test&& test);
+  [[nodiscard]] PlacedBox placed_box(std::uint32_t node);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b) const;
@@ -42,6 +48,10 @@ class Search {
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
+  // Those of the first nodes of the mover's tree, each placed when it is first met: for small bodies all.
+  static constexpr std::uint32_t kPlacedMax = 64;
+  std::uint64_t is_placed_ = 0;  ///< a bit per node
+  std::array<PlacedBox, kPlacedMax> placed_;
 };
 
 double Search::run(NodePairs& stack) {
@@ -50,9 +60,21 @@ double Search::run(NodePairs& stack) {
   return depth_max_;
 }
 
+PlacedBox Search::placed_box(std::uint32_t node) {
+  const std::uint64_t bit = std::uint64_t{1} << node % kPlacedMax;
+  const bool is_kept = node < kPlacedMax;
+  if (is_kept && (is_placed_ & bit) != 0) return placed_[node];
+  const RelativeMotion& motion = pair_.motion;
+  const BoxTree::Node& box = pair_.mover.block_tree.nodes[node];
+  const PlacedBox placed{motion.R * box.center + motion.p, motion.R.cwiseAbs() * box.half};
+  if (!is_kept) return placed;
+  is_placed_ |= bit;
+  return placed_[node] = placed;
+}
+
 /// Descends the mover's tree of blocks and one of the base's; the order of the pairs does not depend on the poses.
 template <typename Test>
-void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) const {
+void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) {
   const RelativeMotion& motion = pair_.motion;
   const auto& blocks = pair_.mover.block_tree.nodes;
   const auto& entities = base.nodes;
@@ -64,8 +86,9 @@ void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) const {
     stack.pop_back();
     const BoxTree::Node& block = blocks[g];
     const BoxTree::Node& entity = entities[s];
-    const Vector3d reach = motion.R.cwiseAbs() * block.half + entity.half + Vector3d::Constant(motion.margin);
-    if (((motion.R * block.center + motion.p - entity.center).cwiseAbs().array() > reach.array()).any()) continue;
+    const PlacedBox placed = placed_box(g);
+    const Vector3d reach = placed.half + entity.half + Vector3d::Constant(motion.margin);
+    if (((placed.center - entity.center).cwiseAbs().array() > reach.array()).any()) continue;
     const bool block_is_leaf = block.right == BoxTree::kLeaf;
     const bool entity_is_leaf = entity.right == BoxTree::kLeaf;
     if (block_is_leaf && entity_is_leaf) {
@@ -121,6 +144,7 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const ExactEdge& edge = pair_.base.edges[e];
   const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
                              motion.R * feature.y};
+  if (!may_cross_edge(pair_, placed, edge)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
   for (std::size_t side = 0; side < 2; ++side)
