@@ -87,25 +87,29 @@ void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) {
   const auto& entities = base.nodes;
   if (blocks.empty() || entities.empty()) return;
   stack.clear();
-  stack.emplace_back(0, 0);
+  const auto visit = [&](std::uint32_t g, std::uint32_t s) {
+    const PlacedBox& block = placed_box(g);
+    const BoxTree::Node& entity = entities[s];
+    for (int i = 0; i < 3; ++i)  // most are apart along the first
+      if (std::abs(block.center[i] - entity.center[i]) > block.half[i] + entity.half[i] + motion.margin) return;
+    stack.emplace_back(g, s);
+  };
+  visit(0, 0);
   while (!stack.empty()) {
     const auto [g, s] = stack.back();
     stack.pop_back();
     const BoxTree::Node& block = blocks[g];
     const BoxTree::Node& entity = entities[s];
-    const PlacedBox& placed = placed_box(g);
-    const Vector3d reach = placed.half + entity.half + Vector3d::Constant(motion.margin);
-    if (((placed.center - entity.center).cwiseAbs().array() > reach.array()).any()) continue;
     const bool block_is_leaf = block.right == BoxTree::kLeaf;
     const bool entity_is_leaf = entity.right == BoxTree::kLeaf;
     if (block_is_leaf && entity_is_leaf) {
       test(block.left, entity.left);
     } else if (entity_is_leaf || (!block_is_leaf && block.half.squaredNorm() > entity.half.squaredNorm())) {
-      stack.emplace_back(block.right, s);
-      stack.emplace_back(block.left, s);
+      visit(block.right, s);
+      visit(block.left, s);
     } else {
-      stack.emplace_back(g, entity.right);
-      stack.emplace_back(g, entity.left);
+      visit(g, entity.right);
+      visit(g, entity.left);
     }
   }
 }
@@ -137,7 +141,7 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   });
   cost_.samples += count;
   if (!any) return;
-  if (feature.own_face == kNoFace && count > 1) cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
+  if (feature.own_face == kNoFace && count > feature.group) cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
   for (std::uint32_t i = 0; i < count; i += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - i);
     reduce_group(placed, curve, block.begin + i, std::span(gaps_ahead).subspan(i, size), face);
