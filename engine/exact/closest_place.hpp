@@ -26,8 +26,8 @@ inline Place place_at(bool is_arc, double c, double s, double t) {
   return {t, c * cosine - s * sine, s * cosine + c * sine};
 }
 
-/// The place of a straight segment, of middle c, that is closest to a plane: an end, or the middle if no end is closer by
-/// `gain`. @param slope  of the gap along the segment
+/// The place of a straight segment, of middle c, that is closest to a plane: an end, or the middle if no end is closer
+/// by `gain`. @param slope  of the gap along the segment
 inline Place closest_place_to_plane(double c, double s, double half, double slope, double gain) {
   const double t = slope > 0 ? -half : half;
   return std::abs(t * slope) < gain ? Place{0, c, s} : place_at(false, c, s, t);

@@ -18,7 +18,7 @@ struct PlacedBox {
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
-      : pair_{mover, base, motion}, rows_(rows), cost_(cost) {}
+      : pair_{mover, base, motion}, R_abs_(motion.R.cwiseAbs()), rows_(rows), cost_(cost) {}
 
   double run(NodePairs& stack);
 
@@ -51,6 +51,7 @@ class Search {
   [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
 
   const BodyPair pair_;
+  const Matrix3d R_abs_;  ///< of motion.R
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
@@ -74,7 +75,7 @@ inline const PlacedBox& Search::placed_box(std::uint32_t node) {
   const BoxTree::Node& box = pair_.mover.block_tree.nodes[node];
   const RelativeMotion& motion = pair_.motion;
   PlacedBox& placed = is_kept ? placed_[node] : last_placed_;
-  placed = {motion.R * box.center + motion.p, motion.R.cwiseAbs() * box.half};
+  placed = {motion.R * box.center + motion.p, R_abs_ * box.half};
   if (is_kept) is_placed_ |= bit;
   return placed;
 }
@@ -141,7 +142,8 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   });
   cost_.samples += count;
   if (!any) return;
-  if (feature.own_face == kNoFace && count > feature.group) cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
+  if (feature.own_face == kNoFace && count > feature.group)
+    cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
   for (std::uint32_t i = 0; i < count; i += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - i);
     reduce_group(placed, curve, block.begin + i, std::span(gaps_ahead).subspan(i, size), face);
@@ -161,11 +163,20 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   if (!may_cross_edge(pair_, placed, edge)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
-  for (std::size_t side = 0; side < 2; ++side)
-    pair_.measure_all(pair_.seen_from(*pair_.base.faces[edge.faces[side]].surface, placed, motion.free_twist), block,
-                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
-  cost_.samples += 2 * count;
   const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const AnalyticSurface& surface = *pair_.base.faces[edge.faces[side]].surface;
+    if (is_straight) {
+      const double distance = (placed.origin - surface.point()).dot(surface.axis());
+      const double slope = placed.x.dot(surface.axis());
+      const double* t = &pair_.mover.sample_c[block.begin];
+      for (std::uint32_t i = 0; i < count; ++i) measures[side][i] = {distance + t[i] * slope, slope, 0, 0};
+      continue;
+    }
+    pair_.measure_all(pair_.seen_from(surface, placed, motion.free_twist), block,
+                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
+  }
+  cost_.samples += 2 * count;
   const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
   for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - begin);
