@@ -26,6 +26,16 @@ inline Place place_at(bool is_arc, double c, double s, double t) {
   return {t, c * cosine - s * sine, s * cosine + c * sine};
 }
 
+/// The place of a straight segment, of middle c, that is closest to a plane: an end, or the middle if no end is closer
+/// by `gain`. @param slope  of the gap along the segment
+inline Place closest_place_to_plane(double c, double s, double half, double slope, double gain) {
+  const double t = slope > 0 ? -half : half;
+  return std::abs(t * slope) < gain ? Place{0, c, s} : place_at(false, c, s, t);
+}
+
+constexpr double kClosestPlaceGain =
+    1e-10;  // m, the accuracy that SearchThresholds count on: what another step would have to win
+
 /// Newton's method on the distance, started at the segment's middle (c, s), within the part of the segment in which the
 /// slopes met so far leave the minimum: beside an axis or an apex the distance turns more sharply than a parabola, and
 /// Newton's steps alone would jump over the place, or to and fro. Where the distance has a maximum instead of a
@@ -35,10 +45,10 @@ inline Place place_at(bool is_arc, double c, double s, double t) {
 inline Place closest_place(const CurveFromSurface& curve, double c, double s, double half, double radius_slope = 0) {
   constexpr int kStepsMax = 40;  // a bound of the work: two are needed, or as many as halve the segment to nothing
   constexpr int kNewtonMax = 4;  // then halves: Newton's steps are of no use where the distance has a kink
-  constexpr double kGain =
-      1e-10;  // m, the accuracy that SearchThresholds count on: what another step would have to win
   Place at{0, c, s};
   if (half == 0) return at;
+  if (curve.surface.kind == SurfaceKind::plane && !curve.is_arc)
+    return closest_place_to_plane(c, s, half, curve.x.z() - radius_slope, kClosestPlaceGain);
   with_measure(curve, [&](auto&& measure_at) {
     double low = -half;
     double high = half;
@@ -50,7 +60,7 @@ inline Place closest_place(const CurveFromSurface& curve, double c, double s, do
       double t = std::clamp(wanted, low, high);
       const bool is_at_end = t == -half || t == half;
       if (i >= kNewtonMax && !is_at_end) t = 0.5 * (low + high);
-      if (std::abs((t - at.t) * slope) < kGain) return;
+      if (std::abs((t - at.t) * slope) < kClosestPlaceGain) return;
       at = place_at(curve.is_arc, c, s, t);
     }
   });

@@ -227,7 +227,7 @@ bool ConvexStep::find_direction_sparse(double dt) {
     const Vector6d force = body.M * (body.u0 - body.u);
     std::copy_n(force.data(), 6, &unknowns_[6 * i]);
   }
-  for (const Run& run : runs_) add_run(run, dt);
+  for (Run& run : runs_) add_run(run, dt);
   factor_.factor();
   factor_.solve(unknowns_);
   bool any = false;
@@ -238,47 +238,66 @@ bool ConvexStep::find_direction_sparse(double dt) {
   return any;
 }
 
-/// Adds the rows of two bodies to the sparse system. Their Jacobians differ by the bodies' centres alone: that of the
-/// second is -T times that of the first, T = (1 0; [d]x 1), where d leads from the second's centre to the first's. So
-/// only one matrix is summed.
-void ConvexStep::add_run(const Run& run, double dt) {
+/// Sums the stiffness of the rows of two bodies that act. Their Jacobians differ by the bodies' centres alone: that of
+/// the second is -T times that of the first, T = (1 0; [d]x 1), where d leads from the second's centre to the first's.
+/// So only one matrix is summed.
+void ConvexStep::sum_stiffness(Run& run, double dt) {
   double H[6][6] = {};  // lower triangle
-  double b[6] = {};
-  bool acts = false;
   for (std::size_t r = run.begin; r < run.end; ++r) {
     const Row& row = rows_[r];
-    if (row.z >= 0) continue;
-    acts = true;
+    if (!row.summed) continue;
     const double* J = row.J[0].data();
-    const double force = dt * row.k * row.z;
     const double stiff = dt * dt * row.k;
     for (int i = 0; i < 6; ++i) {
-      b[i] += force * J[i];
       const double scaled = stiff * J[i];
       for (int j = 0; j <= i; ++j) H[i][j] += scaled * J[j];
     }
   }
-  if (!acts) return;
-  const std::size_t first = at(run.body[0]);
-  Matrix6d of_first;
+  Matrix6d& of_first = run.of_first;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j <= i; ++j) of_first(i, j) = of_first(j, i) = H[i][j];
+  run.has_sum = true;
+  if (run.body[1] == kFixed) return;
+  const Vector3d d = bodies_[at(run.body[0])].p_WC - bodies_[at(run.body[1])].p_WC;
+  Matrix6d& across = run.across;  // T H
+  across = of_first;
+  for (int j = 0; j < 6; ++j)
+    across.block<3, 1>(3, j) += d.cross(Vector3d(of_first(0, j), of_first(1, j), of_first(2, j)));
+  Matrix6d& of_second = run.of_second;  // T H T^T
+  of_second = across;
+  for (int i = 0; i < 6; ++i)
+    of_second.block<1, 3>(i, 3) += d.cross(Vector3d(across(i, 0), across(i, 1), across(i, 2))).transpose();
+}
+
+/// Adds the rows of two bodies to the sparse system. Their stiffness is summed again only if others act than the last
+/// time: towards the minimum few pairs change.
+void ConvexStep::add_run(Run& run, double dt) {
+  double b[6] = {};
+  bool acts = false;
+  for (std::size_t r = run.begin; r < run.end; ++r) {
+    Row& row = rows_[r];
+    const bool row_acts = row.z < 0;
+    run.has_sum = run.has_sum && row.summed == row_acts;
+    row.summed = row_acts;
+    if (!row_acts) continue;
+    acts = true;
+    const double* J = row.J[0].data();
+    const double force = dt * row.k * row.z;
+    for (int i = 0; i < 6; ++i) b[i] += force * J[i];
+  }
+  if (!acts) return;
+  if (!run.has_sum) sum_stiffness(run, dt);
+  const std::size_t first = at(run.body[0]);
   const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) {
     for (std::size_t i = 0; i < 36; ++i) to[i] += from.data()[i];
   };
-  add(factor_.diagonal(first), of_first);
+  add(factor_.diagonal(first), run.of_first);
   for (std::size_t i = 0; i < 6; ++i) unknowns_[6 * first + i] -= b[i];
   if (run.body[1] == kFixed) return;
 
   const std::size_t second = at(run.body[1]);
   const Vector3d d = bodies_[first].p_WC - bodies_[second].p_WC;
-  Matrix6d across = of_first;  // T H
-  for (int j = 0; j < 6; ++j)
-    across.block<3, 1>(3, j) += d.cross(Vector3d(of_first(0, j), of_first(1, j), of_first(2, j)));
-  Matrix6d of_second = across;  // T H T^T
-  for (int i = 0; i < 6; ++i)
-    of_second.block<1, 3>(i, 3) += d.cross(Vector3d(across(i, 0), across(i, 1), across(i, 2))).transpose();
-  add(factor_.diagonal(second), of_second);
+  add(factor_.diagonal(second), run.of_second);
   const Vector3d push(b[0], b[1], b[2]);
   const Vector3d turn = Vector3d(b[3], b[4], b[5]) + d.cross(push);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -286,8 +305,13 @@ void ConvexStep::add_run(const Run& run, double dt) {
     unknowns_[6 * second + 3 + i] += turn[static_cast<int>(i)];
   }
   if (!coupled_) return;
-  add(factor_.off_diagonal(first, second),
-      factor_.is_later(second, first) ? Matrix6d(-across) : Matrix6d(-across.transpose()));
+  BlockCholesky::Block& between = factor_.off_diagonal(first, second);
+  if (factor_.is_later(second, first)) {
+    for (std::size_t i = 0; i < 36; ++i) between[i] -= run.across.data()[i];
+  } else {
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j) between[6 * i + j] -= run.across.data()[6 * j + i];
+  }
 }
 
 /// The derivatives of all gaps and of the first term of the cost along the search direction.

@@ -132,13 +132,17 @@ class ConvexStep {
     double force = 0, end_gap = 0;
     double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
     bool late = false;
+    bool summed = false;  ///< in the stiffness of its run
   };
   /// Rows between the same two bodies, one after the other.
   struct Run {
     std::array<int, 2> body;  ///< as of its rows
     std::size_t begin, end;
     Pair pair;
-    bool joined = false;  ///< in the pattern of the sparse system
+    bool joined = false;   ///< in the pattern of the sparse system
+    bool has_sum = false;  ///< is the stiffness that of the rows that act now?
+    /// What the rows that act add to the sparse system: to either body's block, and to theirs.
+    Matrix6d of_first = Matrix6d::Zero(), of_second = Matrix6d::Zero(), across = Matrix6d::Zero();
   };
   /// The cost along the search direction and its first two derivatives, at step length t.
   struct LineValue {
@@ -160,7 +164,8 @@ class ConvexStep {
   bool find_direction_sparse(double dt);
   [[nodiscard]] bool join_acting_runs();
   void analyze();
-  void add_run(const Run& run, double dt);
+  void add_run(Run& run, double dt);
+  void sum_stiffness(Run& run, double dt);
   void prepare_line_search(double dt);
   [[nodiscard]] LineValue value_along(double t) const;
   [[nodiscard]] bool has_converged() const;

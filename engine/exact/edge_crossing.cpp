@@ -103,8 +103,27 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
 
 Place closest_place_to(const BodyPair& pair, const AnalyticSurface& surface, const PlacedFeature& placed,
                        std::uint32_t sample) {
+  const double half = placed.feature->half_width;
+  if (surface.kind() == SurfaceKind::plane && !placed.is_arc() && half != 0)
+    return closest_place_to_plane(pair.mover.sample_c[sample], pair.mover.sample_s[sample], half,
+                                  placed.x.dot(surface.axis()), kClosestPlaceGain);
   return closest_place(pair.seen_from(surface, placed, pair.motion.free_twist), pair.mover.sample_c[sample],
-                       pair.mover.sample_s[sample], placed.feature->half_width);
+                       pair.mover.sample_s[sample], half);
+}
+
+bool may_cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge) {
+  constexpr double kRounding = 1e-9;  // m, of a gap: more than double precision says of bodies of kilometres
+  const AnalyticSurface& a = *pair.base.faces[edge.faces[0]].surface;
+  const AnalyticSurface& b = *pair.base.faces[edge.faces[1]].surface;
+  if (placed.is_arc() || a.kind() != SurfaceKind::plane || b.kind() != SurfaceKind::plane) return true;
+  const double slope_a = a.axis().dot(placed.x);
+  const double slope_b = b.axis().dot(placed.x);
+  if (slope_a * slope_b >= 0) return false;
+  const double weight_a = slope_b / (slope_b - slope_a);
+  const double mixed =
+      weight_a * (placed.origin - a.point()).dot(a.axis()) + (1 - weight_a) * (placed.origin - b.point()).dot(b.axis());
+  const double length = (weight_a * a.axis() + (1 - weight_a) * b.axis()).norm();
+  return mixed < (pair.motion.margin + kRounding) * length && mixed > -(pair.base.options.spacing + kRounding) * length;
 }
 
 bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,

@@ -12,6 +12,11 @@ namespace verisim::exact {
 [[nodiscard]] Place closest_place_to(const BodyPair& pair, const AnalyticSurface& surface, const PlacedFeature& placed,
                                      std::uint32_t sample);
 
+/// False if no place of a straight feature crosses an edge of two planes within reach. All along the feature the normal
+/// and the gap of such a crossing are the same, so one look at both answers for all segments. True if the feature is
+/// curved or one of the faces is round: they have to be looked at one by one. About 50 flops.
+[[nodiscard]] bool may_cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge);
+
 /// The crossing by position, or else by the rule of one of the two places: a segment may come to the edge within the
 /// step, or slide along one of the faces towards it. If there is one, sets place, p, at, normal, gap and edge_fraction
 /// of `c` and returns true. @param near  places of the segment c.sample that are closest to the edge's faces

@@ -8,23 +8,35 @@
 namespace verisim::exact {
 namespace {
 
+constexpr double kSlack = 1e-9;  // m: more than double precision says of bodies of kilometres
+
+/// A box of the mover's tree in the coordinates of the base: the box along their axes around it.
+struct PlacedBox {
+  Vector3d center, half;
+};
+
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
-      : pair_{mover, base, motion}, rows_(rows), cost_(cost) {}
+      : pair_{mover, base, motion}, R_abs_(motion.R.cwiseAbs()), rows_(rows), cost_(cost) {}
 
   double run(NodePairs& stack);
 
  private:
   template <typename Test>
-  void descend(const BoxTree& base, NodePairs& stack, Test&& test) const;
+  void descend(const BoxTree& base, NodePairs& stack, Test&& test);
+  [[nodiscard]] const PlacedBox& placed_box(std::uint32_t node);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
-  [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b) const;
+  [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
+  [[nodiscard]] double longest_way(const PlacedFeature& placed, const SampleBlock& block) const;
   void reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                     std::span<double> now, std::span<double> remaining, std::uint32_t face);
   [[nodiscard]] bool evaluate_segment(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t count,
                                       std::uint32_t face, Candidate& c);
+  [[nodiscard]] bool is_plane(std::uint32_t face) const {
+    return pair_.base.faces[face].surface->kind() == SurfaceKind::plane;
+  }
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
@@ -41,9 +53,15 @@ class Search {
   [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
 
   const BodyPair pair_;
+  const Matrix3d R_abs_;  ///< of motion.R
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
+  // Those of the first nodes of the mover's tree, each placed when it is first met: for small bodies all.
+  static constexpr std::uint32_t kPlacedMax = 64;
+  std::uint64_t is_placed_ = 0;  ///< a bit per node
+  std::array<PlacedBox, kPlacedMax> placed_;
+  PlacedBox last_placed_;  ///< of a node beyond these
 };
 
 double Search::run(NodePairs& stack) {
@@ -52,32 +70,49 @@ double Search::run(NodePairs& stack) {
   return depth_max_;
 }
 
+inline const PlacedBox& Search::placed_box(std::uint32_t node) {
+  const std::uint64_t bit = std::uint64_t{1} << node % kPlacedMax;
+  const bool is_kept = node < kPlacedMax;
+  if (is_kept && (is_placed_ & bit) != 0) return placed_[node];
+  const BoxTree::Node& box = pair_.mover.block_tree.nodes[node];
+  const RelativeMotion& motion = pair_.motion;
+  PlacedBox& placed = is_kept ? placed_[node] : last_placed_;
+  placed = {motion.R * box.center + motion.p, R_abs_ * box.half};
+  if (is_kept) is_placed_ |= bit;
+  return placed;
+}
+
 /// Descends the mover's tree of blocks and one of the base's; the order of the pairs does not depend on the poses.
 template <typename Test>
-void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) const {
+void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) {
   const RelativeMotion& motion = pair_.motion;
   const auto& blocks = pair_.mover.block_tree.nodes;
   const auto& entities = base.nodes;
   if (blocks.empty() || entities.empty()) return;
   stack.clear();
-  stack.emplace_back(0, 0);
+  const auto visit = [&](std::uint32_t g, std::uint32_t s) {
+    const PlacedBox& block = placed_box(g);
+    const BoxTree::Node& entity = entities[s];
+    for (int i = 0; i < 3; ++i)  // most are apart along the first
+      if (std::abs(block.center[i] - entity.center[i]) > block.half[i] + entity.half[i] + motion.margin) return;
+    stack.emplace_back(g, s);
+  };
+  visit(0, 0);
   while (!stack.empty()) {
     const auto [g, s] = stack.back();
     stack.pop_back();
     const BoxTree::Node& block = blocks[g];
     const BoxTree::Node& entity = entities[s];
-    const Vector3d reach = motion.R.cwiseAbs() * block.half + entity.half + Vector3d::Constant(motion.margin);
-    if (((motion.R * block.center + motion.p - entity.center).cwiseAbs().array() > reach.array()).any()) continue;
     const bool block_is_leaf = block.right == BoxTree::kLeaf;
     const bool entity_is_leaf = entity.right == BoxTree::kLeaf;
     if (block_is_leaf && entity_is_leaf) {
       test(block.left, entity.left);
     } else if (entity_is_leaf || (!block_is_leaf && block.half.squaredNorm() > entity.half.squaredNorm())) {
-      stack.emplace_back(block.right, s);
-      stack.emplace_back(block.left, s);
+      visit(block.right, s);
+      visit(block.left, s);
     } else {
-      stack.emplace_back(g, entity.right);
-      stack.emplace_back(g, entity.left);
+      visit(g, entity.right);
+      visit(g, entity.left);
     }
   }
 }
@@ -97,6 +132,9 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   BlockDistances distances;
   PerSample gaps_now;    // m, estimated
   PerSample gaps_ahead;  // m, likewise, at the end of the step without contact
+  // A place as deep as this gives no row. Along a straight segment the place that is closest to a plane is the deepest.
+  const bool is_straight = !placed.is_arc() && surface.kind() == SurfaceKind::plane;
+  const double deepest = is_straight ? -pair_.base.options.spacing - kSlack : -kOutOfReach;
   bool any = false;
   pair_.measure_all(curve, block, [&](std::uint32_t i, const Measure& m) {
     const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - feature.radius_at(c[i]);
@@ -104,11 +142,12 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
     distances.change[i] = m.change;
     gaps_now[i] = nearest;
     gaps_ahead[i] = nearest < motion.margin ? nearest + m.change : kOutOfReach;
-    any = any || nearest < motion.margin;
+    any = any || (nearest < motion.margin && nearest > deepest);
   });
   cost_.samples += count;
   if (!any) return;
-  if (feature.own_face == kNoFace && count > 1) cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
+  if (feature.own_face == kNoFace && count > feature.group)
+    cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
   for (std::uint32_t i = 0; i < count; i += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - i);
     reduce_group(placed, curve, block.begin + i, std::span(gaps_now).subspan(i, size),
@@ -126,18 +165,30 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const ExactEdge& edge = pair_.base.edges[e];
   const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
                              motion.R * feature.y};
+  if (!may_cross_edge(pair_, placed, edge)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
-  for (std::size_t side = 0; side < 2; ++side)
-    pair_.measure_all(pair_.seen_from(*pair_.base.faces[edge.faces[side]].surface, placed, motion.free_twist), block,
+  const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const AnalyticSurface& surface = *pair_.base.faces[edge.faces[side]].surface;
+    if (is_straight) {
+      const double distance = (placed.origin - surface.point()).dot(surface.axis());
+      const double slope = placed.x.dot(surface.axis());
+      const double* t = &pair_.mover.sample_c[block.begin];
+      for (std::uint32_t i = 0; i < count; ++i) measures[side][i] = {distance + t[i] * slope, slope, 0, 0};
+      continue;
+    }
+    pair_.measure_all(pair_.seen_from(surface, placed, motion.free_twist), block,
                       [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
+  }
   cost_.samples += 2 * count;
+  const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
   for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - begin);
     Candidate best;
     best.gap_ahead = kOutOfReach;
     for (std::uint32_t i = begin; i < begin + size; ++i) {
-      if (!may_cross(feature, measures[0][i], measures[1][i])) continue;
+      if (!may_cross(feature, measures[0][i], measures[1][i], way)) continue;
       Candidate c;
       c.group = block.begin + begin;
       c.sample = block.begin + i;
@@ -156,15 +207,30 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
 }
 
 /// False if a segment is out of reach of the faces of an edge, or one of them is farther all along it. Of its middle's
-/// distances.
-bool Search::may_cross(const Feature& feature, const Measure& a, const Measure& b) const {
+/// distances. Along a straight segment the lead of one plane over the other is linear; unless the motion that a rule
+/// looks at changes it, it is zero between the ends or nowhere.
+/// @param way  m, longest of a place of the segment within a step; infinite if the segment or a face is curved
+bool Search::may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const {
   const RelativeMotion& motion = pair_.motion;
   const double half = feature.half_width;
   if (std::max(nearest_of(a, half, 0), nearest_of(b, half, 0)) >= motion.margin) return false;
   // A parabola's error is less than itself, and rules of motion compare what the step may change.
   const double change = half * (std::abs(a.slope - b.slope) + half * (std::abs(a.bend) + std::abs(b.bend)));
   const bool runs_along = change < motion.thresholds.coincident;
-  return !runs_along && std::abs(a.distance - b.distance) < 2 * (change + motion.margin);
+  const double lead = std::abs(a.distance - b.distance);
+  return !runs_along && lead < 2 * (change + motion.margin) && lead < change + 2 * way + kSlack;
+}
+
+/// Bound of the way of a straight block's places within a step [m], by either of the motions that the rules of
+/// ownership look at.
+double Search::longest_way(const PlacedFeature& placed, const SampleBlock& block) const {
+  const double first = pair_.mover.sample_c[block.begin] - placed.feature->half_width;
+  const double last = pair_.mover.sample_c[block.end - 1] + placed.feature->half_width;
+  double way = 0;  // it is convex along the block: the longest is that of an end
+  for (const Twist* twist : {&pair_.motion.free_twist, &pair_.motion.last_twist})
+    for (const double c : {first, last})
+      way = std::max(way, pair_.moved(placed.origin + c * placed.x, *twist).squaredNorm());
+  return std::sqrt(way);
 }
 
 /// Contact reduction: one row for a group of samples. Among the candidates that the face accepts it is the one with the
