@@ -16,6 +16,11 @@ constexpr double kMargin = 1e-4;
 /// in the next: so much more has to come at once to be left out.
 constexpr std::size_t kRowsMax = 16384;
 constexpr std::size_t kRoom = 2;
+/// m/s: what slides more slowly friction resists in proportion to its speed. Without any friction a body that is
+/// squeezed between two others has no stable place: the pressure W tilts what lies on it by W x / K where it stands x
+/// beside the middle (K: of its contacts, N m), and the tilt pushes it on, the faster the lighter it is (1e-9 kg under
+/// 64 g: e times as far in 30 ms). So it is held by friction, however little, where the tilt is below the coefficient.
+constexpr double kSticking = 1e-3;
 
 /// Bound of the velocity of any point of a body [m/s].
 double speed_of(const Body& body, const Vector6d& u) {
@@ -125,9 +130,13 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
   expect_blows(world, methods);
   for (const std::size_t l : world.near_links) {
     OfLink& of = links_[l];
-    const double overlap = of.found_in != kNone && of.found_in + 1 == world.frame ? of.overlap : 0;
+    const OfLink last = of;
     of = {};
-    of.overlap = overlap;
+    if (last.found_in != kNone && last.found_in + 1 == world.frame) {
+      of.overlap = last.overlap;
+      of.grip = last.grip;
+      of.pressing = last.pressing;
+    }
     exact::ExactLink* search = methods.acting(l) != nullptr ? methods.acting(l)->precise() : nullptr;
     if (search == nullptr) continue;
     const Link& link = world.links[l];
@@ -194,6 +203,7 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next)
     solver_->add_rows(links_[l].search->rows().rows(), bodies_[world.links[l].first].in_solver,
                       bodies_[world.links[l].second].in_solver, {p.restitution, links_[l].overlap});
+  for (std::size_t l = head.first_link; l != kNone; l = links_[l].next) add_grip(world, l);
   cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt, p.restitution_speed));
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
@@ -203,6 +213,7 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
   std::size_t first_row = 0;
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next) {
     read_rows(world, l, first_row, cost);
+    read_grip(world, l, first_row);
     first_row += links_[l].search->rows().rows().size();
   }
 }
@@ -243,6 +254,58 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   cost.contacts += of.acting;
   bodies_[world.links[l].first].contacts += of.acting;
   bodies_[world.links[l].second].contacts += of.acting;
+}
+
+/// Friction by what pressed in the last frame.
+void ExactResponse::add_grip(const World& world, std::size_t l) {
+  OfLink& of = links_[l];
+  const double friction = world.parameters.exact_friction;
+  if (!(of.pressing > 0) || friction == 0) return;
+  Vector3d slip = Vector3d::Zero();
+  for (const std::size_t i : {world.links[l].first, world.links[l].second}) {
+    slip = -slip;
+    if (!bodies_[i].solved) continue;
+    const RigidBody& rigid = world.bodies[i].rigid;
+    slip += rigid.v_C + rigid.omega.cross(of.grip.point - rigid.p_WC);
+  }
+  slip -= slip.dot(of.grip.normal) * of.grip.normal;
+  of.grip.drag = friction * of.pressing / std::max(kSticking, slip.norm());
+  of.in_solver = solver_->add_grip(of.grip, bodies_[world.links[l].first].in_solver,
+                                   bodies_[world.links[l].second].in_solver, world.dt);
+}
+
+/// What the grip of one link did to its second body, and where there is one in the next frame.
+void ExactResponse::read_grip(const World& world, std::size_t l, std::size_t first_row) {
+  OfLink& of = links_[l];
+  const auto& rows = of.search->rows().rows();
+  Vector3d push = Vector3d::Zero(), center = Vector3d::Zero();
+  double sum = 0;
+  const auto each = [&](auto f) {
+    for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i)
+      if (const double force = solver_->force(first_row + i); force > 0) f(rows[i], force);
+  };
+  each([&](const exact::ContactRow& row, double force) {
+    push += force * row.normal;
+    center += force * row.point;
+    sum += force;
+  });
+  if (of.in_solver != exact::ConvexStep::kNoGrip) {
+    const Wrench drag = solver_->grip_wrench(of.in_solver);
+    const Vector3d& p_WC = world.bodies[world.links[l].second].rigid.p_WC;
+    of.on_second += {drag.force, drag.torque + (of.grip.point - p_WC).cross(drag.force)};
+  }
+  of.pressing = 0;
+  const double resultant = push.norm();
+  // A blow is over; and of forces that cancel each other there is no direction.
+  if (solver_->was_hit() || !(resultant > 1e-3 * sum)) return;
+  of.pressing = resultant;
+  of.grip.point = center / sum;
+  of.grip.normal = push / resultant;
+  double square = 0;
+  each([&](const exact::ContactRow& row, double force) {
+    square += force * (row.point - of.grip.point).cross(of.grip.normal).squaredNorm();
+  });
+  of.grip.radius = std::sqrt(square / sum);
 }
 
 }  // namespace verisim

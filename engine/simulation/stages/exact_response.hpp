@@ -62,8 +62,11 @@ class ExactResponse {
     Wrench on_second;
     std::uint32_t acting = 0;
     double depth_max = 0;
-    double overlap = 0;            ///< m, of rows that were not late when there last were any
-    std::size_t found_in = kNone;  ///< frame
+    double overlap = 0;              ///< m, of rows that were not late when there last were any
+    std::size_t found_in = kNone;    ///< frame
+    exact::ConvexStep::Grip grip{};  ///< of the next frame, its drag apart
+    double pressing = 0;             ///< N, across it
+    int in_solver = exact::ConvexStep::kNoGrip;
   };
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
@@ -73,6 +76,8 @@ class ExactResponse {
   void list_islands(const World& world);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
   void solve_island(const World& world, std::size_t island, FrameCost& cost);
+  void add_grip(const World& world, std::size_t link);
+  void read_grip(const World& world, std::size_t link, std::size_t first_row);
   void read_bodies(std::size_t island, double dt);
   void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
 
