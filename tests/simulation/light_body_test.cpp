@@ -19,10 +19,8 @@ using test::Inputs;
 using test::seeds;
 
 constexpr double kGravity = 9.81;
-constexpr double kSettled = 1e-3;  ///< m/s, above what the heavy ones have: it is not on its way out
-/// m/s, above what is heavy and its own fall, in any frame. Wanted: none. A light body that a blow meets in the one
-/// frame in which it lies tilted by 1e-6 rad is a wedge, and friction brakes it from the next frame on.
-constexpr double kWedge = 2;
+/// m/s. A body goes no faster than it fell and what is heavy goes, but for the creep of what friction holds.
+constexpr double kCreeps = 5e-3;
 constexpr double kStays = 0.25;  ///< of its width, sideways
 
 struct Column {
@@ -114,11 +112,10 @@ Column table(std::uint64_t seed) {
   return column;
 }
 
-/// Of the light bodies of a run: how much faster than what is heavy and their own fall they went, the same at the end,
-/// and how far sideways.
+/// Of the light bodies of a run: how much faster than what is heavy and their own fall they went, and how far sideways.
 struct Thrown {
-  double speed = 0, at_end = 0;  ///< m/s
-  double sideways = 0;           ///< of its width
+  double speed = 0;     ///< m/s
+  double sideways = 0;  ///< of its width
 };
 
 Thrown run(Column column, std::size_t frames) {
@@ -139,14 +136,11 @@ Thrown run(Column column, std::size_t frames) {
     const auto speed = [&](std::size_t i) {
       return (simulation.body_pose(i).position - before[i]).norm() / simulation.dt();
     };
-    double heavy_now = 0;
     for (std::size_t i = 0; i < count; ++i)
-      if (!is_light[i]) heavy_now = std::max(heavy_now, speed(i));
-    heavy = std::max(heavy, heavy_now);
+      if (!is_light[i]) heavy = std::max(heavy, speed(i));
     for (std::size_t i = 0; i < count; ++i) {
       if (is_light[i]) {
         thrown.speed = std::max(thrown.speed, speed(i) - heavy - fall);
-        if (frame + 100 >= frames) thrown.at_end = std::max(thrown.at_end, speed(i) - heavy_now);
         const double away = (simulation.body_pose(i).position - start[i]).head<2>().norm();
         thrown.sideways = std::max(thrown.sideways, away / width[i]);
       }
@@ -161,8 +155,7 @@ void expect_none_is_thrown(Column (*make)(std::uint64_t), std::size_t count) {
   for (const std::uint64_t seed : seeds(count)) {
     SCOPED_TRACE(seed);
     all.push_back(run(make(seed), 500));
-    EXPECT_LE(all.back().speed, kWedge);
-    EXPECT_LE(all.back().at_end, kSettled);
+    EXPECT_LE(all.back().speed, kCreeps);
     EXPECT_LE(all.back().sideways, kStays);
   }
   const auto tell = [&](const char* what, double Thrown::*value) {
@@ -171,21 +164,20 @@ void expect_none_is_thrown(Column (*make)(std::uint64_t), std::size_t count) {
                 all[count * 19 / 20].*value, all.back().*value);
   };
   tell("m/s more", &Thrown::speed);
-  tell("at end", &Thrown::at_end);
   tell("sideways", &Thrown::sideways);
 }
 
 TEST(LightBody, InAColumnIsNotThrown) {
-  expect_none_is_thrown(column, by_length<std::size_t>(5, 40, 400));
+  expect_none_is_thrown(column, by_length<std::size_t>(4, 20, 300));
 }
 
 TEST(LightBody, AsALegIsNotThrown) {
-  expect_none_is_thrown(table, by_length<std::size_t>(2, 10, 100));
+  expect_none_is_thrown(table, by_length<std::size_t>(1, 5, 60));
 }
 
 // Without a plate, weight or anything else: two heavy ones fly at a light one from both sides.
 TEST(LightBody, BetweenTwoThatFlyAtItTakesNoMomentum) {
-  for (const std::uint64_t seed : seeds(by_length<std::uint64_t>(3, 12, 100))) {
+  for (const std::uint64_t seed : seeds(by_length<std::uint64_t>(3, 12, 60))) {
     SCOPED_TRACE(seed);
     Inputs in(seed);
     Scene scene = scene_of();
@@ -217,7 +209,7 @@ TEST(LightBody, BetweenTwoThatFlyAtItTakesNoMomentum) {
         const Twist u = simulation.body_twist(i);
         fastest = std::max(fastest, u.linear.norm() + 0.03 * u.angular.norm());
       }
-      ASSERT_LE(simulation.body_twist(1).linear.norm(), fastest + kWedge) << frame;
+      ASSERT_LE(simulation.body_twist(1).linear.norm(), fastest + kCreeps) << frame;
     }
   }
 }
