@@ -121,7 +121,8 @@ void ConvexStep::order_bodies(Row& row) const {
 int ConvexStep::add_grip(const Grip& grip, int first, int second, double dt) {
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(is_unit(grip.normal));
-  VERISIM_ASSERT(!(grip.drag < 0 || grip.radius < 0));
+  VERISIM_ASSERT(grip.drag >= 0);
+  VERISIM_ASSERT(grip.radius >= 0);
   VERISIM_ASSERT(first != second);
   VERISIM_ASSERT(std::min(first, second) >= kFixed);
   VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));

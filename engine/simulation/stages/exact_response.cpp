@@ -300,7 +300,7 @@ ExactResponse::Pressing ExactResponse::pressing(std::size_t l, std::size_t first
     sum += force;
   });
   const double resultant = push.norm();
-  if (!(resultant > kAcross * sum)) return {};
+  if (!(resultant > kAcross * sum) || !std::isfinite(resultant)) return {};  // what diverges ends the run elsewhere
   Pressing found{{center / sum, push / resultant}, resultant};
   double square = 0;
   each([&](const exact::ContactRow& row, double force) {
