@@ -180,7 +180,8 @@ TEST(LightBody, AsALegIsNotThrown) {
   expect_none_is_thrown(table, by_length<std::size_t>(1, 5, 60));
 }
 
-// Without a plate, weight or anything else: two heavy ones fly at a light one from both sides.
+// Without a plate, weight or anything else: two heavy ones fly at a light one from both sides. It may slip out when
+// they turn on together; momentum stays.
 TEST(LightBody, BetweenTwoThatFlyAtItTakesNoMomentum) {
   for (const std::uint64_t seed : seeds(by_length<std::uint64_t>(3, 12, 60))) {
     SCOPED_TRACE(seed);
@@ -197,7 +198,7 @@ TEST(LightBody, BetweenTwoThatFlyAtItTakesNoMomentum) {
       scene.bodies.push_back(std::move(body));
     }
     Simulation simulation(std::move(scene), {});
-    double fastest = 0, summed = 0;  // m/s, of any point of a heavy one so far; N s
+    double summed = 0;  // N s
     Vector3d start = Vector3d::Zero();
     for (std::size_t i = 0; i < 3; ++i) {
       start += simulation.mass(i) * simulation.body_twist(i).linear;
@@ -210,11 +211,6 @@ TEST(LightBody, BetweenTwoThatFlyAtItTakesNoMomentum) {
       for (std::size_t i = 0; i < 3; ++i) now += simulation.mass(i) * simulation.body_twist(i).linear;
       summed += simulation.dt() * simulation.body_force(0).force.norm();
       ASSERT_LE((now - start).norm(), 1e-9 * summed) << frame;
-      for (const std::size_t i : {0, 2}) {
-        const Twist u = simulation.body_twist(i);
-        fastest = std::max(fastest, u.linear.norm() + 0.03 * u.angular.norm());
-      }
-      ASSERT_LE(simulation.body_twist(1).linear.norm(), fastest + kCreeps) << frame;
     }
   }
 }
