@@ -1,6 +1,8 @@
 #include "engine/simulation/stages/exact_response.hpp"
 
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/base/error.hpp"
