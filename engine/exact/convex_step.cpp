@@ -54,6 +54,7 @@ ConvexStep::ConvexStep(std::size_t rows_max, std::size_t bodies_max) {
 void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
   rows_.reserve(rows_max);
   runs_.reserve(rows_max);
+  grips_.reserve(rows_max);
   bodies_.reserve(bodies_max);
   if (bodies_max <= kDenseMax) return;
   factor_.reserve(bodies_max, kBlocksPerBody * bodies_max);
@@ -63,6 +64,7 @@ void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
 void ConvexStep::clear() {
   rows_.clear();
   runs_.clear();
+  grips_.clear();
   bodies_.clear();
   left_out_ = 0;
 }
@@ -104,11 +106,50 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     row.body = {second, first};
     if (second != kFixed) set(from, second, 1, row.J[0]);
     if (first != kFixed) set(from, first, -1, row.J[1]);
-    if (second != kFixed) continue;
-    std::swap(row.body[0], row.body[1]);
-    std::swap(row.J[0], row.J[1]);
+    order_bodies(row);
   }
   if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size(), pair});
+}
+
+/// The first of a row's bodies moves.
+void ConvexStep::order_bodies(Row& row) const {
+  if (row.body[0] != kFixed) return;
+  std::swap(row.body[0], row.body[1]);
+  std::swap(row.J[0], row.J[1]);
+}
+
+int ConvexStep::add_grip(const Grip& grip, int first, int second, double dt) {
+  VERISIM_ASSERT(is_positive(dt));
+  VERISIM_ASSERT(is_unit(grip.normal));
+  VERISIM_ASSERT(grip.drag >= 0);
+  VERISIM_ASSERT(grip.radius >= 0);
+  VERISIM_ASSERT(first != second);
+  VERISIM_ASSERT(std::min(first, second) >= kFixed);
+  VERISIM_ASSERT(std::max(first, second) < static_cast<int>(bodies_.size()));
+  if (rows_.capacity() - rows_.size() < 3) {
+    left_out_ += 3;
+    return kNoGrip;
+  }
+  const Vector3d along = grip.normal.unitOrthogonal();
+  const std::array tangents{along, Vector3d(grip.normal.cross(along)), Vector3d(Vector3d::Zero())};
+  const std::size_t begin = rows_.size();
+  for (const Vector3d& tangent : tangents) {
+    Row& row = rows_.emplace_back();
+    row.both = true;
+    row.g = 0;
+    row.k = grip.drag / dt;
+    row.body = {second, first};
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (row.body[side] == kFixed) continue;
+      const Vector3d arm = grip.point - bodies_[at(row.body[side])].p_WC;
+      row.J[side] << tangent, tangent.isZero(0) ? Vector3d(grip.radius * grip.normal) : arm.cross(tangent);
+      if (side == 1) row.J[side] = -row.J[side];
+    }
+    order_bodies(row);
+  }
+  runs_.push_back({rows_[begin].body, begin, rows_.size(), {}});
+  grips_.push_back({begin, tangents[0], tangents[1], grip.normal, grip.radius});
+  return static_cast<int>(grips_.size()) - 1;
 }
 
 void ConvexStep::evaluate_gaps(double dt) {
@@ -119,8 +160,8 @@ double ConvexStep::cost() const {
   double sum = 0;
   for (const Body& body : bodies_) sum += (body.u - body.u0).dot(body.M * (body.u - body.u0));
   for (const Row& row : rows_) {
-    const double overlap = std::min(0.0, row.z);
-    sum += row.k * overlap * overlap;
+    const double pressed = row.pressed(row.z);
+    sum += row.k * pressed * pressed;
   }
   return 0.5 * sum;
 }
@@ -132,7 +173,7 @@ void ConvexStep::choose_start(double dt) {
   for (Body& body : bodies_) std::swap(body.u, body.u0);  // now u is the motion without contact, u0 that before
   evaluate_gaps(dt);
   double cost_of_free = 0;
-  for (const Row& row : rows_) cost_of_free += 0.5 * row.k * std::min(0.0, row.z) * std::min(0.0, row.z);
+  for (const Row& row : rows_) cost_of_free += 0.5 * row.k * row.pressed(row.z) * row.pressed(row.z);
   const bool starts_free = cost_of_free <= cost_of_before;
   for (Body& body : bodies_) {
     std::swap(body.u, body.u0);
@@ -153,7 +194,7 @@ bool ConvexStep::find_direction_of_one(double dt) {
   }
   const double square = dt * dt;
   for (const Row& row : rows_) {
-    if (row.z >= 0) continue;
+    if (!row.acts()) continue;
     const double* J = row.J[0].data();
     const double force = dt * row.k * row.z;
     const double stiff = square * row.k;
@@ -178,7 +219,7 @@ bool ConvexStep::find_direction_dense(double dt) {
     b.segment<6>(i) = body.M * (body.u0 - body.u);
   }
   for (const Row& row : rows_) {
-    if (row.z >= 0) continue;
+    if (!row.acts()) continue;
     const double stiff = dt * dt * row.k;
     for (std::size_t i = 0; i < 2; ++i) {
       if (row.body[i] == kFixed) continue;
@@ -199,7 +240,7 @@ bool ConvexStep::join_acting_runs() {
   bool grown = false;
   for (Run& run : runs_) {
     if (run.joined || run.body[1] == kFixed) continue;
-    for (std::size_t r = run.begin; r < run.end && !run.joined; ++r) run.joined = rows_[r].z < 0;
+    for (std::size_t r = run.begin; r < run.end && !run.joined; ++r) run.joined = rows_[r].acts();
     grown = grown || run.joined;
   }
   return grown;
@@ -276,7 +317,7 @@ void ConvexStep::add_run(Run& run, double dt) {
   bool acts = false;
   for (std::size_t r = run.begin; r < run.end; ++r) {
     Row& row = rows_[r];
-    const bool row_acts = row.z < 0;
+    const bool row_acts = row.acts();
     run.has_sum = run.has_sum && row.summed == row_acts;
     row.summed = row_acts;
     if (!row_acts) continue;
@@ -331,10 +372,10 @@ ConvexStep::LineValue ConvexStep::value_along(double t) const {
   LineValue sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_curvature_),
                 inertia_slope_ + t * inertia_curvature_, inertia_curvature_};
   for (const Row& row : rows_) {
-    const double overlap = row.z + t * row.dz;
-    if (overlap >= 0) continue;
-    sum.cost += 0.5 * row.k * overlap * overlap;
-    sum.slope += row.k * overlap * row.dz;
+    const double pressed = row.pressed(row.z + t * row.dz);
+    if (pressed == 0) continue;
+    sum.cost += 0.5 * row.k * pressed * pressed;
+    sum.slope += row.k * pressed * row.dz;
     sum.curvature += row.k * row.dz * row.dz;
   }
   return sum;
@@ -372,9 +413,9 @@ bool ConvexStep::advance(double t) {
   for (Body& body : bodies_) body.u += t * body.direction;
   bool same = true;
   for (Row& row : rows_) {
-    const double before = row.z;
+    const bool acted = row.acts();
     row.z += t * row.dz;
-    same = same && (before < 0) == (row.z < 0);
+    same = same && acted == row.acts();
   }
   return same;
 }
@@ -388,7 +429,11 @@ int ConvexStep::minimize(double dt) {
                                            : find_direction_dense(dt);
     if (!moves) return i;
     prepare_line_search(dt);
-    if (has_converged()) return i;
+    if (has_converged()) {
+      // What is lost in the cost's rounding is not in a stiff row's force: 1e-12 m/s is 1e-6 N at 1e9 N/m.
+      advance(1);
+      return i;
+    }
     const double t = step_length();
     const bool same = advance(t);
     // With the same rows acting the cost is one parabola, and a full Newton step ends at its minimum.
@@ -411,7 +456,7 @@ int ConvexStep::solve(double dt, double threshold) {
   int iterations = minimize(dt);
   for (Body& body : bodies_) body.during = body.u;
   for (Row& row : rows_) {
-    row.force = -row.k * std::min(0.0, row.z);
+    row.force = -row.k * row.pressed(row.z);
     row.end_gap = row.z;
   }
   if (hit_ && begin_rebound(dt)) {
@@ -444,6 +489,13 @@ const Vector6d& ConvexStep::velocity(int body) const {
 const Vector6d& ConvexStep::velocity_after(int body) const {
   VERISIM_ASSERT(at(body) < bodies_.size());
   return bodies_[at(body)].u;
+}
+
+Wrench ConvexStep::grip_wrench(int grip) const {
+  VERISIM_ASSERT(at(grip) < grips_.size());
+  const PlacedGrip& g = grips_[at(grip)];
+  const Row* rows = &rows_[g.first_row];
+  return {rows[0].force * g.along + rows[1].force * g.across, rows[2].force * g.radius * g.normal};
 }
 
 Wrench ConvexStep::wrench(int body) const {

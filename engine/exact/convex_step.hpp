@@ -25,9 +25,11 @@
 //   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
 //     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
 //     what is between them.
-// Late rows, of more than kDenseMax bodies or with restitution. A row that overlaps by more than the pair did before
-// and the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give:
-// it moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
+// Friction. A grip is a quadratic term more, dt c/2 |w|^2, of the velocity w of one body against the other at one
+// point: along two tangents, and of their spin about the normal. It takes energy and keeps momentum. How large c is the
+// caller says. Late rows, of more than kDenseMax bodies or with restitution. A row that overlaps by more than the pair
+// did before and the approach explains was not there when it should have been. Nothing compressed it, so it has no
+// energy to give: it moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
@@ -81,6 +83,17 @@ class ConvexStep {
   void add_rows(std::span<const ContactRow> rows, int first, int second) { add_rows(rows, first, second, {}); }
   static constexpr double kPushOut = 0.5;  ///< m/s
 
+  /// Friction between two bodies, as in add_rows.
+  struct Grip {
+    Vector3d point = Vector3d::Zero();    ///< m, where it acts
+    Vector3d normal = Vector3d::UnitZ();  ///< unit; it acts across it
+    double radius = 0;                    ///< m, of the ring about the normal by which it resists a spin
+    double drag = 0;                      ///< N s/m
+  };
+  /// @pre drag >= 0 and radius >= 0, finite; dt is that of solve  @returns its number, kNoGrip: there is no room
+  int add_grip(const Grip& grip, int first, int second, double dt);
+  static constexpr int kNoGrip = -1;
+
   /// Solves for the velocities. @returns the number of Newton iterations; 0 if no row acts. About 1 us for one body and
   /// 20 rows that act. @param threshold  m/s, > 0: a slower approach is no impact
   /// @pre dt is finite and above 0; it is called once after clear()
@@ -97,6 +110,8 @@ class ConvexStep {
   [[nodiscard]] Wrench wrench(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
   [[nodiscard]] double force(std::size_t row) const { return rows_[row].force; }
+  /// Of a grip on its second body, about the grip's point.
+  [[nodiscard]] Wrench grip_wrench(int grip) const;
   /// Was it late? Then its overlap is none that a later row may have.
   [[nodiscard]] bool is_late(std::size_t row) const { return rows_[row].late; }
   /// Its linearised gap at the end of the step [m].
@@ -133,6 +148,9 @@ class ConvexStep {
     double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
     bool late = false;
     bool summed = false;  ///< in the stiffness of its run
+    bool both = false;  ///< of a grip: it pulls as well
+    [[nodiscard]] double pressed(double gap) const { return both ? gap : std::min(0.0, gap); }
+    [[nodiscard]] bool acts() const { return both || z < 0; }
   };
   /// Rows between the same two bodies, one after the other.
   struct Run {
@@ -144,11 +162,18 @@ class ConvexStep {
     /// What the rows that act add to the sparse system: to either body's block, and to theirs.
     Matrix6d of_first = Matrix6d::Zero(), of_second = Matrix6d::Zero(), across = Matrix6d::Zero();
   };
+  /// Its rows: along two tangents, and the spin.
+  struct PlacedGrip {
+    std::size_t first_row;
+    Vector3d along, across, normal;
+    double radius;
+  };
   /// The cost along the search direction and its first two derivatives, at step length t.
   struct LineValue {
     double cost, slope, curvature;
   };
 
+  void order_bodies(Row& row) const;
   int minimize(double dt);
   void note_hits(double dt, double threshold);
   void note_hits(const Run& run, double dt, double threshold);
@@ -174,6 +199,7 @@ class ConvexStep {
 
   std::vector<Row> rows_;
   std::vector<Run> runs_;
+  std::vector<PlacedGrip> grips_;
   std::vector<Body> bodies_;
   BlockCholesky factor_;
   std::vector<double> unknowns_;  ///< of the sparse system, 6 per body

@@ -58,6 +58,7 @@ bool ConvexStep::begin_rebound(double dt) {
   hit_ = any;
   if (!any) return false;
   for (Row& row : rows_) {
+    if (row.both) continue;
     // What has not closed is the next step's; so is what was open, and closes only because of the blow: it is handed
     // on.
     const bool handed_on = row.asked < 0 && row.g > 0 && row.g + dt * rate(row, &Body::u0) > 0;
@@ -96,7 +97,7 @@ void ConvexStep::end_rebound() {
   if (!late_ && linear + quadratic > left)  // u of late rows is of no use: it pushes them apart
     s = std::clamp(2 * left / (linear + std::sqrt(linear * linear + 4 * quadratic * left)), 0.0, 1.0);
   for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
-  for (Row& row : rows_) row.force += s * (-row.k * std::min(0.0, row.z) - row.force);
+  for (Row& row : rows_) row.force += s * (-row.k * row.pressed(row.z) - row.force);
 }
 
 }  // namespace verisim::exact

@@ -90,6 +90,10 @@ int define_simulation_parameters(lua_State* L) {
     if (!is_fraction(*restitution)) raise(L, "restitution is {:g} but must be from 0 to 1", *restitution);
     p.restitution = *restitution;
   }
+  if (const auto friction = fields.number("exactFriction")) {
+    if (!is_fraction(*friction)) raise(L, "exactFriction is {:g} but must be from 0 to 1", *friction);
+    p.exact_friction = *friction;
+  }
   p.restitution_speed = fields.positive("restitutionSpeed").value_or(p.restitution_speed);
   p.passive_contacts = fields.boolean("passiveContacts").value_or(p.passive_contacts);
   state.scene.grasp_distance = fields.positive("graspDistance").value_or(state.scene.grasp_distance);

@@ -49,6 +49,8 @@ void check(const SimulationParameters& p) {
     fail(ErrorKind::input, "contactDampingRatio is {} but must be finite and not negative", p.contact_damping_ratio);
   positive(p.exact_stiffness, "exactStiffness", "N/m^2");
   if (!is_fraction(p.restitution)) fail(ErrorKind::input, "restitution is {} but must be from 0 to 1", p.restitution);
+  if (!is_fraction(p.exact_friction))
+    fail(ErrorKind::input, "exactFriction is {} but must be from 0 to 1", p.exact_friction);
   positive(p.restitution_speed, "restitutionSpeed", "m/s");
   if (!p.gravity.allFinite()) fail(ErrorKind::input, "gravity is not finite");
   if (p.duration) positive(*p.duration, "duration", "s");

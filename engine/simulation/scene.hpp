@@ -49,8 +49,11 @@ struct SimulationParameters {
   // Of contacts between precise surfaces (`exact`). Stiffness: N/m per m of an edge; half of E / (1 - nu^2) of steel on
   // steel by default (engine/exact/exact_body.hpp). Restitution: speed of rebound by speed of approach, 0 (inelastic)
   // to 1; slower approaches than restitution_speed [m/s] are inelastic, so that what bounces comes to rest
-  // (engine/exact/convex_step.hpp).
+  // (engine/exact/convex_step.hpp). Friction: coefficient, 0 to 1, of what slides faster than 1 mm/s; what is slower it
+  // resists in proportion, so that it holds nothing for ever. So little as by default holds light bodies between heavy
+  // ones (stages/exact_response.cpp) and takes a millionth of its weight from what slides.
   double exact_stiffness = 1.15e11;
+  double exact_friction = 1e-6;
   double restitution = 0;
   double restitution_speed = 0.01;
   /// Voxels' contacts give back what they were given: their springs begin where they began

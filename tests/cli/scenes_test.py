@@ -134,7 +134,7 @@ GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "9baccea186387bb1"),
     ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "b29cc8415d11d3db"),
     ("peg_in_hole_step", ["--duration", "3"], "246c5fc06797164b"),
-    ("head_tracking", [], "9c0b24f395f43e08"),
+    ("head_tracking", [], "729dd35252495298"),
     ("slide", [], "12141b5fe201e045"),
     ("stack", [], "c51f094c8fe76c4a"),
 ]

@@ -17,8 +17,7 @@ class ClosedForms(SceneTest):
             with self.subTest(kind=kind):
                 force = self.run_scene("resting.lua", "b", kind=kind, **EXACT).force
                 weight = 1000 * v * G
-                # Wanted: 1e-6. A round body's one row, 1e9 N/m, makes micronewtons of rounding in its place, 1e-15 m.
-                self.assertLessEqual(np.abs(force[1000:, 2] - weight).max(), (1e-6 if kind == "box" else 5e-6) * weight)
+                self.assertLessEqual(np.abs(force[1000:, 2] - weight).max(), 1e-6 * weight)
 
     def test_what_slides_down_a_slope_gains_g_sin_theta(self):
         for angle in (2, 10, 30):

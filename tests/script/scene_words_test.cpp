@@ -12,7 +12,7 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   WrittenScenario written(R"(defineSimulationParameters{
     timestep = 0.002, gravity = {0, 0, -9.81}, seed = 7, duration = 3, frameRate = 30, integrator = "implicit",
     hybrid = "off", contact = "fcl", alignment = "pavlik", reduction = "exactly-one", maxStiffness = 1000, maxAngularStiffness = 0.2, allBodiesAreDynamic = true,
-    limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, exactStiffness = 1e9, restitution = 0.4,
+    limitCouplerDampingForce = true, precision = 1, contactStiffness = 5000, contactDampingRatio = 0.7, exactStiffness = 1e9, exactFriction = 1e-3, restitution = 0.4,
     restitutionSpeed = 0.02, passiveContacts = false, graspDistance = 0.2 })");
   const Scene& scene = written.build();
   const SimulationParameters& p = scene.parameters;
@@ -32,6 +32,7 @@ TEST(DefineSimulationParameters, SetsEveryNameOfTheInterface) {
   EXPECT_EQ(p.contact_stiffness, 5000);
   EXPECT_EQ(p.contact_damping_ratio, 0.7);
   EXPECT_EQ(p.exact_stiffness, 1e9);
+  EXPECT_EQ(p.exact_friction, 1e-3);
   EXPECT_EQ(p.restitution, 0.4);
   EXPECT_EQ(p.restitution_speed, 0.02);
   EXPECT_FALSE(p.passive_contacts);
@@ -71,6 +72,8 @@ TEST(DefineSimulationParameters, RefusesWhatIsWrongWithPlaceAndRemedy) {
       refusal_of("defineSimulationParameters{restitution = 1.5}").find("restitution is 1.5 but must be from 0 to 1"),
       std::string::npos);
   EXPECT_NE(refusal_of("defineSimulationParameters{restitution = 0/0}"), "");
+  EXPECT_NE(refusal_of("defineSimulationParameters{exactFriction = -1}").find("exactFriction is -1 but must be from 0"),
+            std::string::npos);
   EXPECT_NE(
       refusal_of("defineSimulationParameters{exactStiffness = 0}").find("exactStiffness is 0 but must be above 0"),
       std::string::npos);

@@ -200,8 +200,10 @@ TEST(Parameters, OfContactAreRefusedWithOneLine) {
     expect_refused([&] { return Simulation(scene, {}).frame(); }, wanted);
   };
   const double none = std::numeric_limits<double>::quiet_NaN();
-  for (const double bad : {-0.1, 1.001, none})
-    refuse([](SimulationParameters& p, double v) { p.restitution = v; }, bad, "but must be from 0 to 1");
+  for (const double bad : {-0.1, 1.001, none}) {
+    refuse([](SimulationParameters& p, double v) { p.restitution = v; }, bad, "restitution is ");
+    refuse([](SimulationParameters& p, double v) { p.exact_friction = v; }, bad, "exactFriction is ");
+  }
   for (const double bad : {0.0, -1.0, none, std::numeric_limits<double>::infinity()}) {
     refuse([](SimulationParameters& p, double v) { p.exact_stiffness = v; }, bad, "exactStiffness is ");
     refuse([](SimulationParameters& p, double v) { p.restitution_speed = v; }, bad, "restitutionSpeed is ");

@@ -55,6 +55,10 @@ class ExactResponse {
     int in_solver = exact::kFixed;
     std::uint64_t contacts = 0;
   };
+  struct Pressing {
+    exact::ConvexStep::Grip grip;
+    double force = 0;  ///< N, across the grip
+  };
   struct OfLink {
     exact::ExactLink* search = nullptr;  ///< null: none in this frame, or certainly without rows
     bool searched = false;
@@ -64,6 +68,8 @@ class ExactResponse {
     double depth_max = 0;
     double overlap = 0;            ///< m, of rows that were not late when there last were any
     std::size_t found_in = kNone;  ///< frame
+    Pressing pressing;             ///< of the last frame, or of a blow in this one
+    int in_solver = exact::ConvexStep::kNoGrip;
   };
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
@@ -73,6 +79,11 @@ class ExactResponse {
   void list_islands(const World& world);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
   void solve_island(const World& world, std::size_t island, FrameCost& cost);
+  void solve_problem(const World& world, std::size_t island, FrameCost& cost);
+  void add_grip(const World& world, std::size_t link);
+  [[nodiscard]] Pressing pressing(std::size_t link, std::size_t first_row) const;
+  [[nodiscard]] bool squeezes_light_body(const World& world, std::size_t island);
+  void read_grip(const World& world, std::size_t link, std::size_t first_row);
   void read_bodies(std::size_t island, double dt);
   void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
 
