@@ -148,7 +148,7 @@ class ConvexStep {
     double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
     bool late = false;
     bool summed = false;  ///< in the stiffness of its run
-    bool both = false;  ///< of a grip: it pulls as well
+    bool both = false;    ///< of a grip: it pulls as well
     [[nodiscard]] double pressed(double gap) const { return both ? gap : std::min(0.0, gap); }
     [[nodiscard]] bool acts() const { return both || z < 0; }
   };

@@ -32,7 +32,7 @@ std::vector<std::string> events_of(Scene scene) {
   while (simulation.frame() < simulation.frames_planned()) simulation.step();
   std::vector<std::string> texts;
   for (const Event& event : simulation.events())
-    if (event.kind != "device") texts.push_back(event.text);
+    if (event.kind == "grasp" || event.kind == "release") texts.push_back(event.text);
   return texts;
 }
 
