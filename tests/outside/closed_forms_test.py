@@ -1,4 +1,4 @@
-"""Precise contacts beside closed forms: weight, a slope, a ball in a bowl. From recorded poses and forces."""
+"""Precise contacts beside closed forms: weight, a slope, a ball in a bowl, a pin that wedges. From recorded poses and forces."""
 import math
 import unittest
 
@@ -40,6 +40,36 @@ class ClosedForms(SceneTest):
                     a, b = (a + b) / 2, math.sqrt(a * b)
                 period = 2 * math.pi / a * math.sqrt(0.08 / G)
                 self.assertAlmostEqual(2 * np.diff(crossings).mean() / period, 1, delta=1e-4)
+
+
+    @staticmethod
+    def wedged_at(R, r, height):
+        """The tilt at which a pin touches its hole on both sides, `height` apart: 2 R cos(t) - height sin(t) = 2 r."""
+        low, high = 0.0, 0.5
+        for _ in range(100):
+            t = (low + high) / 2
+            low, high = (t, high) if 2 * R * math.cos(t) - height * math.sin(t) > 2 * r else (low, t)
+        return (low + high) / 2
+
+    def test_a_pin_wedges_at_the_tilt_that_its_clearance_allows(self):
+        R, half_length, upper_rim = 0.075, 0.2, 0.1
+        through = [(c, 0.3) for c in (5e-3, 5e-4, 5e-5, 1e-5)]  # ORACLES gives these: 2.81410 degrees ...
+        partly = [(5e-3, 0.15), (5e-4, 0.12), (5e-4, 0.05), (5e-5, 0.05), (1e-5, 0.12)]
+        for clearance, entered in through + partly:
+            with self.subTest(clearance=clearance, entered=entered):
+                r = R - clearance
+                # A hand that holds only the direction lets a pin that is not all through move aside, to the wall.
+                pose, _, force = self.run_scene("wedge.lua", "pin", clearance=clearance, entered=entered,
+                                                turn=self.wedged_at(R, r, min(entered, 0.2)),
+                                                stiffness=3000 if entered > 0.2 else 10)
+                _, _, z, qx, qy, qz, qw = pose[-1]
+                tilt = math.atan2(2 * math.hypot(qx * qz + qy * qw, qy * qz - qx * qw), 1 - 2 * (qx * qx + qy * qy))
+                height = 0.2
+                if entered < 0.2:  # from the hole's rim down to the pin's lower edge, where that now is
+                    height = upper_rim - (z + r * math.sin(tilt) - half_length * math.cos(tilt))
+                    self.assertGreater(height, 0.01, "it has not left the hole")
+                self.assertGreater(np.linalg.norm(force[-1]), 0)
+                self.assertAlmostEqual(tilt / self.wedged_at(R, r, height), 1, delta=1e-5)
 
 
 if __name__ == "__main__":
