@@ -4,7 +4,7 @@
 //   accuracy_table [--seeds N] [--rounds N] [--duration SECONDS] [--every FRAMES] [--clearance METRES] [--answer NAME]
 //
 // The hand of seed s, 1 to N: how far beside the hole it aims is drawn evenly over a disc of 3 mm, its tilt evenly from
-// -1 to 1 degree about the axis square to that, its tremor by the scenario's own stream of that seed. Every row has the
+// 0 to 1 degree, towards where it aims or away from it, its tremor by the scenario's own stream. Every row has the
 // same hands. A figure is the median over the seeds, with the least and the greatest behind it. Recorded: the deepest
 // penetration that the run tells of. True: the largest overlap that engine/ruler finds from the poses, every
 // so many frames. Each run is repeated, bit for bit, and each frame keeps its least time: a neighbour on the machine
@@ -53,7 +53,8 @@ struct Figures {
 
 ScenarioOptions options_of(const Options& options, const Answer& answer, double clearance, std::uint64_t seed) {
   const RandomStream hand(seed, "accuracy table");
-  const double beside = kBeside * std::sqrt(hand.uniform(0)), tilt = kTilt * (2 * hand.uniform(1) - 1);
+  const double side = hand.uniform(2) < 0.5 ? -1 : 1;
+  const double beside = side * kBeside * std::sqrt(hand.uniform(0)), tilt = kTilt * hand.uniform(1);
   ScenarioOptions all;
   all.path = VERISIM_SOURCE_DIR "/scenarios/peg_in_hole.lua";
   all.sets = {{"clearance", fmt::format("{:.17g}", clearance)},

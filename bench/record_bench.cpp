@@ -14,6 +14,7 @@
 #include "engine/record/run_file.hpp"
 #include "engine/record/synth.hpp"
 #include "engine/record/trace.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim {
 namespace {
@@ -21,7 +22,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::string file() {
-  return (std::filesystem::temp_directory_path() / "verisim_record_bench.h5").string();
+  static const test::Folder folder;
+  return folder.file("run.h5");
 }
 
 Schema schema() {

@@ -72,12 +72,12 @@ class ConvexStep {
   /// @pre fewer than bodies_max bodies so far; M is symmetric positive definite  @returns the body's number
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before);
 
-  /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
   /// What is known of two bodies beside their rows.
   struct Pair {
     double restitution = 0;                                    ///< e, in [0, 1]; 0: none of the rows is ever hit
     double overlap = std::numeric_limits<double>::infinity();  ///< m, before: deeper rows may be late
   };
+  /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
   /// @pre both are numbers from add_body or kFixed, and not the same
   void add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair);
   void add_rows(std::span<const ContactRow> rows, int first, int second) { add_rows(rows, first, second, {}); }

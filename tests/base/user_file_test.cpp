@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "engine/base/error.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim::user_file_test {
 namespace {
@@ -16,19 +16,14 @@ namespace fs = std::filesystem;
 
 class UserFileTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("user_file_test_" + std::to_string(::getpid()));
-    fs::create_directory(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
   [[nodiscard]] std::string written(const std::string& name, const std::string& content) const {
     std::ofstream(path(name)) << content;
     return path(name);
   }
 
  private:
-  fs::path folder_;
+  test::Folder folder_;
 };
 
 std::string refusal(const std::string& path) {

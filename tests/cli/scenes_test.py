@@ -131,8 +131,8 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "9baccea186387bb1"),
-    ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "b29cc8415d11d3db"),
+    ("peg_in_hole", ["--duration", "3"], "e837f7a61b241402"),
+    ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "0e341c7246fda51e"),
     ("peg_in_hole_step", ["--duration", "3"], "246c5fc06797164b"),
     ("head_tracking", [], "729dd35252495298"),
     ("slide", [], "12141b5fe201e045"),

@@ -1,7 +1,6 @@
 // STEP files: written by the project and read back, and bad ones.
-#include <unistd.h>
-
 #include "tests/geometry/models.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim::step_file_test {
 namespace {
@@ -22,7 +21,8 @@ class Step : public ::testing::Test {
     std::filesystem::remove(path_);
     return content;
   }
-  std::string path_ = std::filesystem::temp_directory_path() / fmt::format("verisim-step-{}.step", getpid());
+  test::Folder folder_;
+  std::string path_ = folder_.file("written.step");
 };
 
 TEST_F(Step, ComesBackAsItWasWritten) {

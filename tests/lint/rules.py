@@ -294,6 +294,15 @@ OPENING = "|".join([
 ])
 
 
+FOLDER_NAMED = r"\b(?:temp_directory_path|TempDir|mkdtemp|tmpnam|tempnam)\b|\"/(?:var/)?tmp\b"
+
+
+def folders_named_by_a_test(files):
+    """Two tests that run beside each other under one name: one removes what the other reads."""
+    elsewhere = {path: text for path, text in files.items() if path != "tests/support/folder.hpp"}
+    return seen(elsewhere, FOLDER_NAMED, "tests/support/folder.hpp makes a folder of a test's own", without_comments)
+
+
 def files_opened_elsewhere(files):
     return seen_outside(MAY_OPEN_FILES, files, OPENING,
                         "engine/base/user_file.hpp opens what a user names: a FIFO makes any other place wait")

@@ -179,6 +179,16 @@ class Rules(unittest.TestCase):
             ("engine/voxel/limits.cpp", "double l = std::log10(x);\n"),
         ])
 
+    def test_tests_write_into_folders_of_their_own(self):
+        self.holds(rules.folders_named_by_a_test, sources("tests", "bench"), planted=[
+            ("tests/base/a.cpp", 'auto p = fs::temp_directory_path() / "mine";\n'),
+            ("tests/base/a.cpp", "auto p = testing::TempDir();\n"), ("tests/base/a.cpp", 'std::ofstream("/tmp/mine");\n'),
+            ("bench/a.cpp", "mkdtemp(name);\n"),
+        ], harmless=[
+            ("tests/base/a.cpp", "// temp_directory_path\n"), ("tests/base/a.cpp", "const Folder folder;\n"),
+            ("tests/support/folder.hpp", "mkdtemp(name);\n"),
+        ])
+
     def test_files_are_opened_in_few_places(self):
         self.holds(rules.files_opened_elsewhere, ENGINE, planted=[
             "std::ifstream in(path);\n", "std::fstream f;\n", "std::basic_ifstream<char> in;\n", "#include <fstream>\n",

@@ -24,8 +24,7 @@ elseif p.chamfer_by == "planes" then
     peg = peg - rotz(cut, 2*math.pi*i/p.n)
   end
 else
-  local rc = R/math.cos(math.pi/p.n)
-  peg = peg * (Solid.cone{radius1=rc-ch, radius2=rc+14*ch, height=15*ch}:translate{0,0,-L/2+7.5*ch} + Solid.cylinder{radius=0.03, height=L}:translate{0,0,14*ch})
+  peg = peg * (Solid.cone{radius1=R-ch, radius2=R+14*ch, height=15*ch}:translate{0,0,-L/2+7.5*ch} + Solid.cylinder{radius=0.03, height=L}:translate{0,0,14*ch})
 end
 addObject{ name="block", fixed=true, density=7800, voxelsize=p.voxelsize, Solid.box{0.1,0.1,H} - section(R+p.c, H+0.01) }
 local seat = L/2 - H/2 - 0.005

@@ -94,10 +94,9 @@ def peg_points(n, chamfer_by, R=0.01, L=0.06, ch=0.001):
     top = at(polygon(R), L / 2)
     if chamfer_by == "planes":
         return np.vstack([top, at(polygon(R - ch), -L / 2), at(polygon(R), -L / 2 + ch)])
-    rc = R / math.cos(math.pi / n)
     parts = [top]
     corner = polygon(R)
-    low = rc - ch
+    low = R - ch
     for i in range(n):  # along a flat's lower edge: a hyperbola where the cone cuts it, else the bottom's straight edge
         s = np.linspace(0, 1, 101)[:, None]
         xy = corner[i] * (1 - s) + corner[(i + 1) % n] * s

@@ -2,40 +2,19 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "engine/record/run_file.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim::small_run {
 
-/// A folder of this test's own, removed at its end.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("verisim_record_" + std::to_string(::getpid()) + "_" + name())) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string file(const std::string& file_name) const { return (path_ / file_name).string(); }
-  [[nodiscard]] std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
-  }
-
- private:
-  std::filesystem::path path_;
-  static std::string name() { return ::testing::UnitTest::GetInstance()->current_test_info()->name(); }
-};
+using test::Folder;
 
 inline Schema schema() {
   Schema s;

@@ -1,8 +1,6 @@
 // A scenario whose files a test writes into a folder of its own, run against the real inputs and the real simulation.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -13,33 +11,27 @@
 
 #include "engine/base/error.hpp"
 #include "engine/script/scenario.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim {
 
 class WrittenScenario {
  public:
   explicit WrittenScenario(const std::string& script) {
-    char pattern[] = "/tmp/verisim_script_XXXXXX";
-    folder_ = mkdtemp(pattern);
-    options.path = (folder_ / "pin.lua").string();
+    options.path = folder_.file("pin.lua");
     write("pin.lua", script);
-  }
-  ~WrittenScenario() {
-    simulation.reset();
-    scenario.reset();
-    std::filesystem::remove_all(folder_);
   }
   WrittenScenario(const WrittenScenario&) = delete;
   WrittenScenario& operator=(const WrittenScenario&) = delete;
 
   void write(const std::string& name, const std::string& content) {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << content;
+    std::filesystem::create_directories((folder() / name).parent_path());
+    std::ofstream(folder() / name, std::ios::binary) << content;
   }
 
   /// Runs the script, until the scene stands.
   Scene& build() {
-    inputs = std::make_unique<Inputs>(Inputs::live(folder_.string(), allowed));
+    inputs = std::make_unique<Inputs>(Inputs::live(folder().string(), allowed));
     scenario = std::make_unique<Scenario>(options, *inputs);
     scene = scenario->take_scene();
     return scene;
@@ -71,17 +63,18 @@ class WrittenScenario {
       if (event.kind == kind) texts.push_back(event.text);
     return texts;
   }
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
+ private:
+  test::Folder folder_;  // removed after what reads in it
+
+ public:
   ScenarioOptions options;
   std::vector<std::string> allowed;
   std::unique_ptr<Inputs> inputs;
   std::unique_ptr<Scenario> scenario;
   Scene scene;
   std::unique_ptr<Simulation> simulation;
-
- private:
-  std::filesystem::path folder_;
 };
 
 /// The refusal of a script that stands alone.

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "engine/base/error.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim::inputs_test {
 namespace {
@@ -16,15 +17,13 @@ namespace fs = std::filesystem;
 class InputsTest : public testing::Test {
  protected:
   void SetUp() override {
-    top_ = fs::path(testing::TempDir()) / "verisim inputs test";
-    fs::remove_all(top_);
     fs::create_directories(top_ / "scene");
     std::ofstream(top_ / "scene" / "inside.txt") << "inside";
     std::ofstream(top_ / "outside.txt") << "outside";
     fs::create_symlink(top_ / "outside.txt", top_ / "scene" / "link.txt");
   }
-  void TearDown() override { fs::remove_all(top_); }
-  fs::path top_;
+  const test::Folder folder_;
+  const fs::path top_ = folder_.path() / "with a blank";
 };
 
 TEST_F(InputsTest, ReadsWithinItsFolderAndRemembersWhatItRead) {
