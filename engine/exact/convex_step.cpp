@@ -252,14 +252,14 @@ int ConvexStep::solve(double dt, double threshold) {
   int iterations = minimize(dt);
   for (Body& body : bodies_) body.during = body.u;
   for (Row& row : rows_) {
-    row.force = -row.k * row.pressed(row.z);
+    row.force = row.before_rebound = -row.k * row.pressed(row.z);
     row.end_gap = row.z;
   }
   if (hit_ && begin_rebound(dt)) {
     iterations += minimize(dt);
     end_rebound();
   }
-  sum_up();
+  sum_up(dt);
   return iterations;
 }
 
@@ -269,11 +269,18 @@ double ConvexStep::rate(const Row& row, Vector6d Body::*velocity) const {
   return rate;
 }
 
-void ConvexStep::sum_up() {
+void ConvexStep::sum_up(double dt) {
   for (const Row& row : rows_) {
-    if (row.force == 0) continue;
-    for (std::size_t side = 0; side < 2; ++side)
-      if (row.body[side] != kFixed) bodies_[at(row.body[side])].push += row.force * row.J[side];
+    if (row.force == 0 && row.before_rebound == 0) continue;
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (row.body[side] == kFixed) continue;
+      Body& body = bodies_[at(row.body[side])];
+      body.push += row.force * row.J[side];
+      if (!hit_) continue;
+      body.push.tail<3>() -= row.before_rebound * row.turn[side];
+      const Vector3d more = (row.force - row.before_rebound) * row.J[side].head<3>();
+      body.shift_moment += dt * body.during.head<3>().cross(more);
+    }
   }
 }
 
@@ -291,13 +298,21 @@ Wrench ConvexStep::grip_wrench(int grip) const {
   VERISIM_ASSERT(at(grip) < grips_.size());
   const PlacedGrip& g = grips_[at(grip)];
   const Row* rows = &rows_[g.first_row];
-  return {rows[0].force * g.along + rows[1].force * g.across, rows[2].force * g.radius * g.normal};
+  const auto pull = [&](auto of) { return Vector3d(of(rows[0]) * g.along + of(rows[1]) * g.across); };
+  const Vector3d more = pull([](const Row& row) { return row.force - row.before_rebound; });
+  return {pull([](const Row& row) { return row.force; }),
+          rows[2].force * g.radius * g.normal + rows[0].moved.cross(more)};
 }
 
 Wrench ConvexStep::wrench(int body) const {
   VERISIM_ASSERT(at(body) < bodies_.size());
   const Vector6d& push = bodies_[at(body)].push;
   return {push.head<3>(), push.tail<3>()};
+}
+
+const Vector3d& ConvexStep::shift_moment(int body) const {
+  VERISIM_ASSERT(at(body) < bodies_.size());
+  return bodies_[at(body)].shift_moment;
 }
 
 }  // namespace verisim::exact

@@ -23,8 +23,10 @@
 //     handed on from body to body, one per step.
 //   - While it is hit a row is as stiff as rigid bodies: a blow is over within the step, whatever the stiffness.
 //   - w is moved towards u until the contacts give no more energy than their springs held. Several blows at once could
-//     create energy otherwise (a chain whose bodies are parting when it is hit). Both keep the momentum, and so does
-//     what is between them.
+//     create energy otherwise (a chain whose bodies are parting when it is hit).
+//   - What w has more than u is an impulse at the end of the step, when the bodies have moved: it acts at one place for
+//     both, the row's point moved by the mean of their velocities. So u, w and what is between them keep the angular
+//     momentum, too.
 // Friction. A grip is a quadratic term more, dt c/2 |w|^2, of the velocity w of one body against the other at one
 // point: along two tangents, and of their spin about the normal. It takes energy and keeps momentum. How large c is the
 // caller says. Late rows, of more than kDenseMax bodies or with restitution. A row that overlaps by more than the pair
@@ -106,10 +108,16 @@ class ConvexStep {
   /// The velocity that it has at the end: the same but where a row was hit.
   [[nodiscard]] const Vector6d& velocity_after(int body) const;
   [[nodiscard]] bool was_hit() const { return hit_; }  ///< any row, or late and pushing, in the last solve
-  /// Contact wrench on a body about its centre of mass, constant over the step. Rows in their order.
+  /// Contact wrench on a body about its centre of mass. Rows in their order. dt of it takes u0 to velocity_after().
   [[nodiscard]] Wrench wrench(int body) const;
+  /// What is to be added to its torque for the torque about where the centre of mass was at the start: what a rebound
+  /// gives acts at the end.
+  [[nodiscard]] const Vector3d& shift_moment(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
   [[nodiscard]] double force(std::size_t row) const { return rows_[row].force; }
+  /// How much more the rebound made of that, and by how much the place has moved where it acts [N, m].
+  [[nodiscard]] double rebound(std::size_t row) const { return rows_[row].force - rows_[row].before_rebound; }
+  [[nodiscard]] const Vector3d& moved(std::size_t row) const { return rows_[row].moved; }
   /// Of a grip on its second body, about the grip's point.
   [[nodiscard]] Wrench grip_wrench(int grip) const;
   /// Was it late? Then its overlap is none that a later row may have.
@@ -134,8 +142,10 @@ class ConvexStep {
     Vector3d p_WC;
     Matrix6d M;
     Vector6d u0, before, u, direction;
-    Vector6d during = Vector6d::Zero();  ///< velocity()
-    Vector6d push = Vector6d::Zero();    ///< wrench()
+    Vector6d during = Vector6d::Zero();   ///< velocity()
+    Vector6d push = Vector6d::Zero();     ///< wrench()
+    Vector6d without = Vector6d::Zero();  ///< u0 of the step, while u0 is that of the rebound
+    Vector3d shift_moment = Vector3d::Zero();
   };
   struct Row {
     std::array<Vector6d, 2> J;  ///< Jacobian: rate of the gap by the bodies' velocities
@@ -145,6 +155,9 @@ class ConvexStep {
     double z = 0;        ///< gap at the end of the step
     double dz = 0;       ///< its change along the search direction
     double force = 0, end_gap = 0;
+    double before_rebound = 0;                                         ///< N, of the force
+    Vector3d moved = Vector3d::Zero();                                 ///< m, of its point until the rebound
+    std::array<Vector3d, 2> turn{Vector3d::Zero(), Vector3d::Zero()};  ///< what J has gained by that
     double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
     bool late = false;
     bool summed = false;  ///< in the stiffness of its run
@@ -178,8 +191,9 @@ class ConvexStep {
   void note_hits(double dt, double threshold);
   void note_hits(const Run& run, double dt, double threshold);
   [[nodiscard]] bool begin_rebound(double dt);
+  void move_rows(double dt);
   void end_rebound();
-  void sum_up();
+  void sum_up(double dt);
   [[nodiscard]] double rate(const Row& row, Vector6d Body::*velocity) const;
   void choose_start(double dt);
   void evaluate_gaps(double dt);

@@ -34,7 +34,6 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold) {
   for (std::size_t r = run.begin; r < run.end; ++r) {
     Row& row = rows_[r];
     const double known = run.pair.overlap + kUnknown;
-    // Bodies that move with u and end with w keep their angular momentum to dt only, so a few are left as they were.
     const bool watches = bodies_.size() > kDenseMax || run.pair.restitution > 0;
     const double overlap = row.curving - row.g;
     if (run.pair.restitution == 0 && overlap <= known) continue;
@@ -68,13 +67,38 @@ bool ConvexStep::begin_rebound(double dt) {
       row.g = -dt * row.asked;
     }
   }
+  move_rows(dt);
   evaluate_gaps(dt);
   return true;
+}
+
+/// To where the rebound acts. What a row has pushed already it has pushed where it was: with that, u0 is such that the
+/// rows' forces in their new places give the velocity at the end.
+void ConvexStep::move_rows(double dt) {
+  for (Body& body : bodies_) body.without = body.u0;
+  for (Row& row : rows_) {
+    const Vector3d& u = bodies_[at(row.body[0])].during.head<3>();
+    if (row.body[1] == kFixed) {  // its point moves with the body
+      row.moved = dt * u;
+      continue;
+    }
+    row.moved = 0.5 * dt * (u + bodies_[at(row.body[1])].during.head<3>());
+    for (std::size_t side = 0; side < 2; ++side) {
+      Body& body = bodies_[at(row.body[side])];
+      row.turn[side] = (row.moved - dt * body.during.head<3>()).cross(row.J[side].head<3>());
+      row.J[side].tail<3>() += row.turn[side];
+      if (row.force == 0) continue;
+      Vector6d pushed = Vector6d::Zero();
+      pushed.tail<3>() = dt * row.force * row.turn[side];
+      body.u0 -= body.M.llt().solve(pushed);
+    }
+  }
 }
 
 /// Takes as much of the rebound as creates no energy. The work of the contacts is that of their impulse A (u - u0)
 /// along the mean of the velocities before and after: a parabola in the fraction s of the rebound that is taken.
 void ConvexStep::end_rebound() {
+  for (Body& body : bodies_) body.u0 = body.without;
   double held = 0;  // J, by springs at the start
   for (const Row& row : rows_) {
     const double overlap = std::max(0.0, row.curving - row.g);
@@ -94,8 +118,11 @@ void ConvexStep::end_rebound() {
   }
   const double left = std::max(held - work, 0.0);  // s linear + s^2 quadratic is to stay below
   double s = 1;
-  if (!late_ && linear + quadratic > left)  // u of late rows is of no use: it pushes them apart
-    s = std::clamp(2 * left / (linear + std::sqrt(linear * linear + 4 * quadratic * left)), 0.0, 1.0);
+  if (!late_ && linear + quadratic > left) {  // u of late rows is of no use: it pushes them apart
+    const double root = std::sqrt(linear * linear + 4 * quadratic * left);
+    s = linear > 0 ? 2 * left / (linear + root) : (root - linear) / (2 * quadratic);  // neither loses digits
+    s = std::clamp(s, 0.0, 1.0);
+  }
   for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
   for (Row& row : rows_) row.force += s * (-row.k * row.pressed(row.z) - row.force);
 }

@@ -104,6 +104,7 @@ void ExactResponse::begin(const World& world, const Response& response) {
     of.solved = of.placed = false;
     of.speed = 0;
     of.wrench = {};
+    of.shift_moment = Vector3d::Zero();
     of.contacts = 0;
     if (!world.bodies[i].exact || !world.moves(world.bodies[i])) continue;
     of.step = begin_implicit(world.bodies[i].rigid, response.loads(i), world.dt);
@@ -238,6 +239,7 @@ void ExactResponse::read_bodies(std::size_t island, double dt) {
     of.velocity = solver_->velocity(of.in_solver);
     of.velocity_after = solver_->velocity_after(of.in_solver);
     of.wrench = solver_->wrench(of.in_solver);
+    of.shift_moment = solver_->shift_moment(of.in_solver);
     if (alone) continue;
     // A stiff row's force has the roundings of its gap times its stiffness, 1e-9 of it and more. The velocity that
     // exactly these forces give keeps the momentum of bodies that push each other.
@@ -258,6 +260,9 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
     if (!solver_->is_late(first_row + i)) of.overlap = std::max(of.overlap, -rows[i].gap);
+    // A row that pushed and is free after the rebound has no force left, but two opposite ones at two places.
+    const Vector3d rebound = solver_->rebound(first_row + i) * rows[i].normal;
+    of.on_second.torque += solver_->moved(first_row + i).cross(rebound);
     if (!(force > 0)) continue;
     ++of.acting;
     const Vector3d f = force * rows[i].normal;

@@ -30,6 +30,8 @@ class ExactResponse {
   /// With which it ends the step: another one if it was hit and rebounds.
   [[nodiscard]] const Vector6d& velocity_after(std::size_t body) const { return bodies_[body].velocity_after; }
   [[nodiscard]] const Wrench& wrench(std::size_t body) const { return bodies_[body].wrench; }
+  /// With it the wrench is about where the body was at the start of the step: that of a rebound acts at its end [N m].
+  [[nodiscard]] const Vector3d& shift_moment(std::size_t body) const { return bodies_[body].shift_moment; }
 
   /// What the precise contacts of a link do to its second body.
   [[nodiscard]] const Wrench& on_second(std::size_t link) const { return links_[link].on_second; }
@@ -47,6 +49,7 @@ class ExactResponse {
     double speed = 0;      ///< m/s, bound of that of any of its points without contact
     double speed_hit = 0;  ///< m/s, likewise if another body hits it in this step
     Wrench wrench;
+    Vector3d shift_moment = Vector3d::Zero();
     Bounds box_B;
     exact::OrientedBox box;                              ///< box_B
     bool placed = false;                                 ///< is it of this frame?

@@ -14,6 +14,7 @@ void Motion::advance(World& world, const Response& response, const ExactResponse
                                                     exact.wrench(i), world.dt, &exact.velocity(i))
                : world.is_implicit() ? step_implicit(body.rigid, loads, world.dt, passivity.scale(i))
                                      : step_semi_implicit(body.rigid, loads, world.dt, passivity.scale(i));
+    if (exact.solved(i)) work_[i].contact.torque += exact.shift_moment(i);
     if (!body.rigid.is_finite())
       fail(ErrorKind::diverged,
            "frame {}: the state of '{}' is not finite any more; lower the stiffness or the time step", world.frame,
