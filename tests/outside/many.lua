@@ -3,7 +3,7 @@ local p = params{n = 10, hybrid = "exact", integrator = "implicit", voxelsize = 
 defineSimulationParameters{
   hybrid = p.hybrid, integrator = p.integrator, allBodiesAreDynamic = true, gravity = {0, 0, -9.81}, duration = 1,
 }
-addObject{name = "plate", fixed = true, voxelsize = p.voxelsize, Solid.box{0.5, 1.2, 0.02}:translate{0, 0, -0.01}}
+addObject{name = "plate", fixed = true, voxelsize = p.voxelsize, Solid.box{0.5, 1.6, 0.02}:translate{0, 0, -0.01}}
 for i = 1, p.n do
   addObject{
     name = "b" .. i, density = 1000, voxelsize = p.voxelsize,
