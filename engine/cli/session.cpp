@@ -61,9 +61,8 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
     for (const Part& part : body.parts)
       for (const std::string& warning : warnings_about(part)) notices.push_back("'" + body.name + "': " + warning);
   for (const auto& device : scene.devices)
-    if (!device->driven())
-      notices.push_back("device '" + device->name() +
-                        "' is driven by nothing and stays at its home pose; --bind drives it");
+    for (const std::string& idle : device->idle())
+      notices.push_back("device '" + idle + "' is driven by nothing and stays at its home pose; --bind drives it");
   session.simulation = std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads});
   const auto warn = [&](const std::string& text) {
     if (!quiet) std::fprintf(stderr, "warning: %s\n", shown(text).c_str());

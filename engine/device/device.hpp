@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/base/columns.hpp"
 #include "engine/base/contract.hpp"
@@ -103,6 +104,10 @@ class Device {
   [[nodiscard]] virtual double travel() const = 0;
   /// Is anything driving it? A device that nothing drives stays at its home pose (and the run says so).
   [[nodiscard]] virtual bool driven() const = 0;
+  /// Names of what nothing drives: this device, or a tracker in its chain.
+  [[nodiscard]] virtual std::vector<std::string> idle() const {
+    return driven() ? std::vector<std::string>() : std::vector{name()};
+  }
   /// Where the virtual handle can be.
   [[nodiscard]] virtual Workspace workspace() const { return {}; }
   /// Of a source: the handle's own load, before the first frame. A recorded hand has felt its handle already.

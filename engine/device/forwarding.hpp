@@ -26,6 +26,7 @@ class ForwardingDevice : public Device {
   [[nodiscard]] double duration() const override { return inner_->duration(); }
   [[nodiscard]] double travel() const override { return inner_->travel(); }
   [[nodiscard]] bool driven() const override { return inner_->driven(); }
+  [[nodiscard]] std::vector<std::string> idle() const override { return inner_->idle(); }
   [[nodiscard]] Workspace workspace() const override { return inner_->workspace(); }
   void carry(const HandleLoad& load) override { inner_->carry(load); }
   void declare(Columns& columns) const override { inner_->declare(columns); }

@@ -41,6 +41,17 @@ DeviceNode& innermost(DeviceNode& node) {
   return *at;
 }
 
+std::vector<DeviceNode*> named_in(DeviceNode& node) {
+  std::vector<DeviceNode*> names;
+  if (node.is_filter()) {
+    names = named_in(*node.inner);
+    if (node.base) names.push_back(node.base.get());
+  } else {
+    names.push_back(&node);
+  }
+  return names;
+}
+
 void check_building(lua_State* L, const char* word) {
   if (ScriptState::of(L).simulation != nullptr)
     raise(L, "{}: the simulation runs already; call it while the scene is built", word);
@@ -105,16 +116,18 @@ DeviceFactory replay_of(Inputs& inputs, const std::string& trace, double max_gap
 }
 
 void name_devices(const std::vector<DevicePointer>& devices) {
+  std::vector<DeviceNode*> all;
+  for (const DevicePointer& device : devices)
+    for (DeviceNode* node : named_in(*device)) all.push_back(node);
   std::vector<std::string> taken;
-  for (const DevicePointer& device : devices) {
-    DeviceNode& node = innermost(*device);
-    if (node.name.empty()) continue;
-    if (std::find(taken.begin(), taken.end(), node.name) != taken.end())
-      fail(ErrorKind::input, "{}: there is a device '{}' already; give each another name=", node.place, node.name);
-    taken.push_back(node.name);
+  for (const DeviceNode* node : all) {
+    if (node->name.empty()) continue;
+    if (std::find(taken.begin(), taken.end(), node->name) != taken.end())
+      fail(ErrorKind::input, "{}: there is a device '{}' already; give each another name=", node->place, node->name);
+    taken.push_back(node->name);
   }
-  for (const DevicePointer& device : devices) {
-    DeviceNode& node = innermost(*device);
+  for (DeviceNode* at : all) {
+    DeviceNode& node = *at;
     if (node.name.empty()) {
       node.name = node.default_name;
       for (int i = 2; std::find(taken.begin(), taken.end(), node.name) != taken.end(); ++i)
@@ -136,7 +149,8 @@ std::shared_ptr<Device> make_device(DeviceNode& node, std::uint64_t seed) {
     VERISIM_ASSERT(node.make != nullptr);
     VERISIM_ASSERT(!innermost(node).made_as.empty());
     const std::shared_ptr<Device> inner = node.inner ? make_device(*node.inner, seed) : nullptr;
-    node.device = at_place(node.place, [&] { return node.make({innermost(node).made_as, seed, inner}); });
+    const std::shared_ptr<Device> base = node.base ? make_device(*node.base, seed) : nullptr;
+    node.device = at_place(node.place, [&] { return node.make({innermost(node).made_as, seed, inner, base}); });
   }
   VERISIM_ASSERT(node.device != nullptr);
   return node.device;

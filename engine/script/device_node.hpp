@@ -20,6 +20,7 @@ struct DeviceMaking {
   std::string name;  ///< of the device, and of its random streams
   std::uint64_t seed = 1;
   std::shared_ptr<Device> inner;  ///< of the node's inner node, made already; null if it has none
+  std::shared_ptr<Device> base;   ///< of its base node, likewise
 };
 /// Never returns null. Error(input) for a description that cannot be made.
 using DeviceFactory = std::function<std::shared_ptr<Device>(const DeviceMaking&)>;
@@ -31,6 +32,7 @@ struct DeviceNode {
   std::string place;                  ///< FILE:LINE of the word, for later errors
   bool drivable = false;              ///< hardware: a source may be its inner node, by operator= or by --bind
   std::shared_ptr<DeviceNode> inner;  ///< filters: what they wrap; hardware: what drives it, or null
+  std::shared_ptr<DeviceNode> base;   ///< of a filter that needs a second device: a tracker of the base
   const char* records = nullptr;      ///< filters: what of theirs is recorded, and so may be in a chain once
   DeviceFactory make;
   std::shared_ptr<Device> device;  ///< null until make_device
@@ -44,6 +46,8 @@ using DevicePointer = std::shared_ptr<DeviceNode>;
 /// The hardware or source at the inner end of a chain of filters: it carries the name. @pre every filter has an inner
 /// node
 [[nodiscard]] DeviceNode& innermost(DeviceNode& node);
+/// All that carry a name in a chain: the innermost, and the trackers around it, from the inside out.
+[[nodiscard]] std::vector<DeviceNode*> named_in(DeviceNode& node);
 
 // What a word is made of. They raise with place and reason.
 

@@ -96,8 +96,13 @@ void ScriptState::check_sets() const {
 }
 
 void ScriptState::bind_devices() {
+  std::vector<DeviceNode*> named;
   std::vector<std::string> names;
-  for (const auto& device : devices) names.push_back(innermost(*device).name);
+  for (const auto& device : devices)
+    for (DeviceNode* node : named_in(*device)) {
+      named.push_back(node);
+      names.push_back(node->name);
+    }
   for (const auto& node : companions) {
     if (std::find(names.begin(), names.end(), node->name) != names.end())
       fail(ErrorKind::input, "{}: there is a device '{}' already; give the {} another name=", node->place, node->name,
@@ -109,7 +114,7 @@ void ScriptState::bind_devices() {
     if (found == names.end())
       fail(ErrorKind::input, "--bind {}={}: {} has no device '{}'{}", wanted, source, name(), wanted,
            suggestion(wanted, names));
-    DeviceNode& node = innermost(*devices[static_cast<std::size_t>(found - names.begin())]);
+    DeviceNode& node = *named[static_cast<std::size_t>(found - names.begin())];
     if (!node.drivable)
       fail(ErrorKind::input,
            "--bind {}={}: '{}' is driven by the scenario itself; bind a device of Devices.Sensable or Devices.Haption",

@@ -3,7 +3,9 @@
 #include "engine/device/bubble.hpp"
 #include "engine/device/bump.hpp"
 #include "engine/device/filters.hpp"
+#include "engine/device/hardware.hpp"
 #include "engine/device/passivity_filter.hpp"
+#include "engine/device/tracked_transform.hpp"
 #include "engine/script/device_node.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
@@ -23,6 +25,8 @@ template <>
 inline constexpr const char* kTypeName<NavigatorPointer> = "Navigation";
 
 namespace {
+
+constexpr double kTrackerRate = 60;  ///< Hz, of the trackers of the dissertation's rooms
 
 // --- placement ------------------------------------------------------------------------------------------------------
 
@@ -57,6 +61,55 @@ int scale_device(lua_State* L) {
   if (!factor) raise(L, "scaleDevice needs scale: scaleDevice{{ device, scale = 4 }}");
   fields.finish(true);
   push(L, scaled_device(L, std::move(inner), *factor));
+  return 1;
+}
+
+// TrackedTransform(device, "tracker") or TrackedTransform{ device, tracker = "tracker", rate = 60, delay = 0 }. What a
+// third argument meant to SPARTA is not known.
+int tracked_transform(lua_State* L) {
+  constexpr const char* kWord = "TrackedTransform";
+  HardwareDescription tracker = ideal_device("tracker");
+  tracker.model = "tracker";
+  tracker.rate = kTrackerRate;
+  DevicePointer node, base;
+  if (lua_istable(L, 1)) {
+    Fields fields(L, 1, kWord);
+    node = new_filter(L, wrapped_device(L, fields, kWord));
+    base = std::make_shared<DeviceNode>();
+    if (fields.push("tracker")) {
+      base->name = name_at(L, lua_gettop(L), fields.name_of("tracker"));
+      lua_pop(L, 1);
+    }
+    tracker.rate = fields.not_negative("rate", tracker.rate);
+    tracker.delay = fields.not_negative("delay", tracker.delay);
+    if (fields.push("operator")) {
+      base->inner = device_at(L, lua_gettop(L), fields.name_of("operator"));
+      if (!base->inner->is_source()) raise(L, "{}: operator must be a source of motion, such as Devices.Replay", kWord);
+      lua_pop(L, 1);
+    }
+    fields.finish(true);
+  } else {
+    check_building(L, kWord);
+    node = new_filter(L, device_at(L, 1, "TrackedTransform: the device"));
+    base = std::make_shared<DeviceNode>();
+    base->name = name_at(L, 2, "TrackedTransform: the tracker's name");
+    if (!lua_isnoneornil(L, 3))
+      ScriptState::of(L).notice(
+          fmt::format("{}: {}: the third argument is accepted and changes nothing", where(L), kWord));
+  }
+  if (base->name.empty()) raise(L, "{} needs a tracker: {}{{ device, tracker = \"robot\" }}", kWord, kWord);
+  ScriptState::of(L).keep(kNodeBytes);
+  base->default_name = "tracker";
+  base->place = where(L);
+  base->drivable = true;
+  base->make = [tracker](const DeviceMaking& making) {
+    HardwareDescription named = tracker;
+    named.name = making.name;
+    return make_hardware(std::move(named), making.inner);
+  };
+  node->base = std::move(base);
+  node->make = [](const DeviceMaking& making) { return make_tracked_transform(making.inner, making.base); };
+  push(L, node);
   return 1;
 }
 
@@ -257,6 +310,7 @@ void add_filter_words(lua_State* L) {
   set_global<translate_device, Charge::call>(L, "translateDevice");
   set_global<rotate_device, Charge::call>(L, "rotateDevice");
   set_global<scale_device, Charge::call>(L, "scaleDevice");
+  set_global<tracked_transform, Charge::call>(L, "TrackedTransform");
   add_bubble_words(L);
   set_global<bump_device, Charge::call>(L, "bumpDevice");
   set_global<passivity_device, Charge::call>(L, "passivityDevice");

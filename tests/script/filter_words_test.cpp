@@ -77,6 +77,19 @@ TEST(Filters, AreTheOnesThatTheScriptAskedFor) {
                 "rotated by (0, 1.57", "with a bump of 1 N", "with a passivity observer"});
 }
 
+// The published call, and a base that a trace drives: a step a second late.
+TEST(TrackedTransform, LoadsAsPublishedAndIsDrivenByName) {
+  expect_parts(described("addDevice(TrackedTransform(Devices.Haption.Virtuose6D3545{}, 'RobotTracker', true))"),
+               {"Virtuose 6D35-45", "on a base that RobotTracker (tracker, 60 Hz) follows"});
+  WrittenScenario written("addDevice(TrackedTransform{ Devices.Ideal{}, tracker = 'robot', rate = 0, delay = 0.1 })");
+  written.write("base.csv",
+                "# verisim-trace 1\n# kind: haptic\n# rate_hz: 10\n# source: a test\nt,px,py,pz,qx,qy,qz,qw\n"
+                "0,0,0,0,0,0,0,1\n0.1,1,0,0,0,0,0,1\n0.2,1,0,0,0,0,0,1\n");
+  written.options.binds = {{"robot", "base.csv"}};
+  (void)written.run(151);
+  EXPECT_NEAR(written.scene.devices[0]->reading().handle.position.x(), 0.5, 1e-12);
+}
+
 std::string refusal(const std::string& script) {
   return WrittenScenario("local omni = Devices.Sensable.PhantomOmni{}\n" + script).refusal();
 }
@@ -99,6 +112,15 @@ TEST(Filters, RefuseWhatIsNone) {
       {"rotateDevice{ omni }", "rotateDevice needs rotation"},
       {"bumpDevice{ omni, force = 0 }", "force"},
       {"Devices.Ideal{ rate = -1 }", "rate is -1 but must not be negative"},
+      {"TrackedTransform{ omni }", "TrackedTransform needs a tracker"},
+      {"TrackedTransform(omni)", "the tracker's name"},
+      {"TrackedTransform{ omni, tracker = 'robot', rate = -1 }", "rate is -1 but must not be negative"},
+      {"TrackedTransform{ omni, tracker = 'robot', delay = 0/0 }", "delay"},
+      {"TrackedTransform{ omni, tracker = 'robot', operator = omni }", "operator must be a source of motion"},
+      {"addDevice(TrackedTransform{ Devices.Ideal{ name = 'omni' }, tracker = 'omni' })",
+       "there is a device 'omni' already"},
+      {"addDevice(TrackedTransform{ TrackedTransform{ omni, tracker = 'a' }, tracker = 'a' })",
+       "there is a device 'a' already"},
       {"addDevice(omni) addDevice(bumpDevice{ omni })", "was added already"}};
   for (const auto& [script, text] : cases)
     EXPECT_NE(refusal(script).find(text), std::string::npos) << script << ": " << refusal(script);
