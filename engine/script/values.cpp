@@ -174,6 +174,12 @@ std::optional<double> Fields::positive(const char* name) {
   return value;
 }
 
+double Fields::not_negative(const char* name, double otherwise) {
+  const double value = number(name, otherwise);
+  if (value < 0) raise(L_, "{} is {:g} but must not be negative", name_of(name), value);
+  return value;
+}
+
 std::optional<std::string> Fields::text(const char* name) {
   if (!push(name)) return std::nullopt;
   std::string value = text_at(L_, -1, name_of(name));

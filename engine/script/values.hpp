@@ -155,6 +155,8 @@ class Fields {
   [[nodiscard]] double number(const char* name, double otherwise) { return number(name).value_or(otherwise); }
   /// A number that must be above zero.
   [[nodiscard]] std::optional<double> positive(const char* name);
+  /// A number that must not be below zero.
+  [[nodiscard]] double not_negative(const char* name, double otherwise);
   [[nodiscard]] std::optional<std::string> text(const char* name);
   /// The field "name".
   [[nodiscard]] std::optional<std::string> name();
