@@ -45,6 +45,11 @@ class BubbleDevice final : public ForwardingDevice {
     ForwardingDevice::render(felt, frame);
   }
   [[nodiscard]] double travel() const override { return std::numeric_limits<double>::infinity(); }
+  void practise(const Practice& practice) override {
+    Practice within = practice;
+    within.edge = std::min(practice.edge, bubble_.radius / ForwardingDevice::gain());
+    ForwardingDevice::practise(within);
+  }
   [[nodiscard]] Workspace workspace() const override { return {}; }
 
   void declare(Columns& columns) const override {

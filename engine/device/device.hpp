@@ -19,6 +19,14 @@
 
 namespace verisim {
 
+/// What an operator sees of the virtual world, as it was at the end of the frame before. Where a scale, a bubble or a
+/// navigator is between the two it is not where the hand is.
+struct Sight {
+  Pose handle;         ///< the virtual handle: what the outermost device reads
+  Pose body;           ///< of the body that is held
+  bool holds = false;  ///< is one?
+};
+
 /// What a device is told of a frame.
 struct DeviceFrame {
   std::uint64_t number = 0;
@@ -26,6 +34,7 @@ struct DeviceFrame {
   double dt = 0;                  ///< s
   std::uint32_t collisions = 0;   ///< contacts of the body that the device holds; for sample() of the frame before
   bool collision_starts = false;  ///< in the same frame; debounced (CollisionStart)
+  Sight sight = {};               ///< for sample()
 };
 
 /// What a device says in one frame.
@@ -54,6 +63,14 @@ struct Workspace {
 struct HandleLoad {
   double mass = 0;      ///< kg, apparent
   double friction = 0;  ///< N, Coulomb
+};
+
+/// What an operator has learned of the chain around its device before the first frame: what does not change.
+struct Practice {
+  double gain = 1;      ///< how much further the virtual handle moves than the hand (Device::gain)
+  Workspace workspace;  ///< where the virtual handle can be (Device::workspace)
+  /// m, of the hand: how far it can go until its position no longer controls the handle's alone
+  double edge = std::numeric_limits<double>::infinity();
 };
 
 /// What began or ended in a frame. Texts are literals.
@@ -112,6 +129,10 @@ class Device {
   [[nodiscard]] virtual Workspace workspace() const { return {}; }
   /// Of a source: the handle's own load, before the first frame. A recorded hand has felt its handle already.
   virtual void carry(const HandleLoad& /*load*/) {}
+  /// How much further the virtual handle moves than what moves it, where its position does: scales multiply.
+  [[nodiscard]] virtual double gain() const { return 1; }
+  /// Of a source: what its operator knows of the chain, before the first frame.
+  virtual void practise(const Practice& /*practice*/) {}
   /// Adds what the device itself records, under /state/device/NAME. Called once, before the first frame; the getters
   /// live as long as the device.
   virtual void declare(Columns& /*columns*/) const {}

@@ -25,6 +25,7 @@ class ScaleDevice final : public ForwardingDevice {
     ForwardingDevice::render({wrench.force / scale_, wrench.torque}, frame);
   }
   [[nodiscard]] double travel() const override { return scale_ * ForwardingDevice::travel(); }
+  [[nodiscard]] double gain() const override { return scale_ * ForwardingDevice::gain(); }
   [[nodiscard]] Workspace workspace() const override {
     const Workspace inner = ForwardingDevice::workspace();
     return {scale_ * inner.min, scale_ * inner.max};

@@ -29,6 +29,8 @@ class ForwardingDevice : public Device {
   [[nodiscard]] std::vector<std::string> idle() const override { return inner_->idle(); }
   [[nodiscard]] Workspace workspace() const override { return inner_->workspace(); }
   void carry(const HandleLoad& load) override { inner_->carry(load); }
+  [[nodiscard]] double gain() const override { return inner_->gain(); }
+  void practise(const Practice& practice) override { inner_->practise(practice); }
   void declare(Columns& columns) const override { inner_->declare(columns); }
   void report(DeviceNotes& notes) override { inner_->report(notes); }
 

@@ -80,6 +80,9 @@ class HardwareDevice final : public Device {
     return source_ ? source_->travel() + std::sqrt(3.0) * description_.resolution : 0;
   }
   [[nodiscard]] bool driven() const override { return source_ != nullptr; }
+  void practise(const Practice& practice) override {
+    if (source_) source_->practise(practice);
+  }
   [[nodiscard]] Workspace workspace() const override { return description_.workspace; }
 
   void declare(Columns& columns) const override {

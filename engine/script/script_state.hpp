@@ -151,6 +151,7 @@ void add_node_words(lua_State* L);        ///< Model, modelParts, Transform, Gro
 void add_body_words(lua_State* L);        ///< what addObject returns
 void add_brep_words(lua_State* L);        ///< FeatureSet, BoundaryFeature, Plane, Cylinder …
 void add_device_words(lua_State* L);      ///< Devices, addDevice, grasp
+void add_hand_word(lua_State* L);         ///< Devices.Hand, into the table at the top of the stack
 void add_filter_words(lua_State* L);      ///< what wraps devices: placement, bubble, navigation
 void add_wii_words(lua_State* L);         ///< WiiHead
 void add_simulation_words(lua_State* L);  ///< simulation, CollisionCounter

@@ -1,8 +1,5 @@
 // Devices and grasps.
-#include <cmath>
-
 #include "engine/device/hardware.hpp"
-#include "engine/device/sources.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/device_node.hpp"
 #include "engine/script/script_state.hpp"
@@ -17,23 +14,17 @@ constexpr double kVirtuoseScale = 1;  // and for the Virtuose
 
 // --- hardware -------------------------------------------------------------------------------------------------------
 
-double not_negative(lua_State* L, Fields& fields, const char* name, double otherwise) {
-  const double value = fields.number(name, otherwise);
-  if (value < 0) raise(L, "{} is {:g} but must not be negative", fields.name_of(name), value);
-  return value;
-}
-
 /// What of a model a scene may switch off, on, or set.
-void read_hardware(lua_State* L, Fields& fields, HardwareDescription& d) {
+void read_hardware(Fields& fields, HardwareDescription& d) {
   d.forces = fields.boolean("forces").value_or(true);
-  d.resolution = not_negative(L, fields, "resolution", d.resolution);
+  d.resolution = fields.not_negative("resolution", d.resolution);
   d.force_max = fields.positive("peakForce").value_or(d.force_max);
-  d.torque_max = not_negative(L, fields, "peakTorque", d.torque_max);
+  d.torque_max = fields.not_negative("peakTorque", d.torque_max);
   d.stops = fields.boolean("stops").value_or(d.stops);
-  d.rate = not_negative(L, fields, "rate", d.rate);
-  d.delay = not_negative(L, fields, "delay", d.delay);
-  d.load.mass = not_negative(L, fields, "mass", d.load.mass);
-  d.load.friction = not_negative(L, fields, "friction", d.load.friction);
+  d.rate = fields.not_negative("rate", d.rate);
+  d.delay = fields.not_negative("delay", d.delay);
+  d.load.mass = fields.not_negative("mass", d.load.mass);
+  d.load.friction = fields.not_negative("friction", d.load.friction);
 }
 
 int hardware(lua_State* L, const char* word, HardwareDescription description, double scale,
@@ -42,7 +33,7 @@ int hardware(lua_State* L, const char* word, HardwareDescription description, do
   Fields fields(L, 1, word);
   DevicePointer node = new_device(L, fields, description.name.c_str());
   node->drivable = true;
-  read_hardware(L, fields, description);
+  read_hardware(fields, description);
   scale = fields.positive("scale").value_or(scale);
   if (fields.push("operator")) {
     node->inner = device_at(L, lua_gettop(L), fields.name_of("operator"));
@@ -92,81 +83,6 @@ int replay(lua_State* L) {
   const bool allow_gaps = fields.boolean("allowGaps").value_or(false);
   fields.finish(false);
   node->make = replay_of(ScriptState::of(L).inputs, *trace, max_gap, allow_gaps);
-  push(L, node);
-  return 1;
-}
-
-HandWaypoint waypoint_at(lua_State* L, int index, const std::string& what) {
-  HandWaypoint waypoint;
-  Fields fields(L, index, what);
-  if (const auto position = fields.vector("position"))
-    waypoint.pose.position = *position;
-  else if (fields.children() == 3)
-    waypoint.pose.position = vector_at(L, index, what);
-  else
-    raise(L, "{} needs position: {{ position = {{x, y, z}}, speed = 0.1 }} or {{x, y, z}}", what);
-  waypoint.pose.rotation = fields.rotation("orientation").value_or(Quaterniond::Identity());
-  waypoint.speed = fields.positive("speed").value_or(waypoint.speed);
-  waypoint.dwell = fields.number("dwell", 0);
-  if (waypoint.dwell < 0) raise(L, "{}: dwell is {:g} s but must not be negative", what, waypoint.dwell);
-  fields.finish(true);
-  return waypoint;
-}
-
-void read_path(lua_State* L, Fields& fields, HandDescription& hand) {
-  if (!fields.push("path"))
-    raise(L, "Devices.Hand needs path: a list of waypoints {{ position = {{x, y, z}}, speed = 0.1, dwell = 0 }}");
-  const int list = lua_gettop(L);
-  if (lua_type(L, list) != LUA_TTABLE || lua_objlen(L, list) == 0)
-    raise(L, "Devices.Hand: path must be a list of waypoints, not {}",
-          lua_type(L, list) == LUA_TTABLE ? "an empty one" : described(L, list));
-  const auto count = static_cast<int>(lua_objlen(L, list));
-  for (int i = 1; i <= count; ++i) {
-    lua_rawgeti(L, list, i);
-    hand.path.push_back(waypoint_at(L, lua_gettop(L), fmt::format("Devices.Hand: path[{}]", i)));
-    lua_pop(L, 1);
-  }
-  lua_pop(L, 1);
-}
-
-// A muscle that is given another stiffness or mass stays critically damped unless its damping is given too.
-void read_impedance(lua_State* L, Fields& fields, HandDescription& hand) {
-  hand.mass = fields.positive("mass").value_or(hand.mass);
-  hand.stiffness = fields.positive("stiffness").value_or(hand.stiffness);
-  hand.damping = not_negative(L, fields, "damping", 2 * std::sqrt(hand.stiffness * hand.mass));
-  hand.inertia = fields.positive("inertia").value_or(hand.inertia);
-  hand.angular_stiffness = fields.positive("angularStiffness").value_or(hand.angular_stiffness);
-  hand.angular_damping =
-      not_negative(L, fields, "angularDamping", 2 * std::sqrt(hand.angular_stiffness * hand.inertia));
-}
-
-int hand_device(lua_State* L) {
-  check_building(L, "Devices.Hand");
-  Fields fields(L, 1, "Devices.Hand");
-  DevicePointer node = new_device(L, fields, "hand");
-  HandDescription hand;
-  read_path(L, fields, hand);
-  // `repeat` is a keyword of Lua: as a key it needs ["repeat"].
-  hand.repeat = fields.boolean("loop").value_or(false);
-  hand.repeat = fields.boolean("repeat").value_or(hand.repeat);
-  read_impedance(L, fields, hand);
-  hand.lead = fields.positive("lead").value_or(hand.lead);
-  hand.patience = fields.positive("patience").value_or(hand.patience);
-  hand.reaction = not_negative(L, fields, "reaction", hand.reaction);
-  hand.tremor = not_negative(L, fields, "tremor", 0);
-  hand.angular_tremor = not_negative(L, fields, "angularTremor", 0);
-  hand.error = fields.vector("error").value_or(Vector3d::Zero());
-  hand.angular_error = fields.vector("angularError").value_or(Vector3d::Zero());
-  const std::optional<double> seed = fields.number("seed");
-  if (seed && (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed)))
-    raise(L, "Devices.Hand: seed must be a whole number, not {:g}", *seed);
-  fields.finish(false);
-  node->make = [hand = std::move(hand), seed](const DeviceMaking& making) {
-    HandDescription named = hand;
-    named.name = making.name;
-    named.seed = seed ? static_cast<std::uint64_t>(*seed) : making.seed;
-    return make_hand(std::move(named));
-  };
   push(L, node);
   return 1;
 }
@@ -281,7 +197,7 @@ void add_device_words(lua_State* L) {
   lua_setfield(L, -2, "Geomagic");
   set_function<ideal, Charge::call>(L, "Ideal");
   set_function<replay, Charge::call>(L, "Replay");
-  set_function<hand_device, Charge::call>(L, "Hand");
+  add_hand_word(L);
   lua_setglobal(L, "Devices");
   set_global<add_device, Charge::call>(L, "addDevice");
   set_global<grasp, Charge::call>(L, "grasp");

@@ -31,13 +31,19 @@ double distance_to(const Body& body, const Vector3d& p_W) {
   return std::sqrt(static_cast<double>(nearest));
 }
 
+/// @pre hand.handle_before is up to date
+Sight seen_by(const World& world, const Hand& hand) {
+  const bool holds = hand.body != kNone;
+  return {hand.handle_before, holds ? world.bodies[hand.body].rigid.pose() : Pose(), holds};
+}
+
 }  // namespace
 
 void Grasping::sample(World& world) {
   for (Hand& hand : world.hands) {
     Device& device = *hand.device;
     hand.handle_before = device.reading().handle;
-    device.sample({world.frame, world.time(), world.dt, hand.collisions, hand.collision_starts});
+    device.sample({world.frame, world.time(), world.dt, hand.collisions, hand.collision_starts, seen_by(world, hand)});
     const Pose& handle = device.reading().handle;
     if (!handle.position.allFinite() || !handle.rotation.coeffs().allFinite())
       fail(ErrorKind::diverged, "frame {}: the handle of device '{}' is not finite", world.frame, device.name());

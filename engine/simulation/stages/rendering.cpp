@@ -74,7 +74,7 @@ void render(World& world, const Contacts& contacts, const ExactResponse& exact, 
     }
     hand.collision_starts = hand.detector.update(world.time(), hand.collisions);
     note_collision(world, h, notes);
-    hand.device->render(wrench, {world.frame, world.time(), world.dt, hand.collisions, hand.collision_starts});
+    hand.device->render(wrench, {world.frame, world.time(), world.dt, hand.collisions, hand.collision_starts, {}});
     reports.clear();
     hand.device->report(reports);
     for (const DeviceNotes::Note& report : reports)
