@@ -130,6 +130,10 @@ void check_goals(const HandDescription& hand) {
     require(is_positive(goal.force), hand, "a goal's force must be finite and above 0 N");
     require(goal.speed > 0, hand, "a goal's speed must be above 0 m/s");
     require(is_not_negative(goal.dwell), hand, "a goal's dwell must be finite and not negative");
+    require(is_positive(goal.pitch) && is_positive(goal.search_speed) && is_positive(goal.search_radius), hand,
+            "a goal's pitch, searchSpeed and searchRadius must be finite and above 0");
+    require(is_positive(goal.tilt) && goal.tilt < 1 && is_not_negative(goal.tip) && is_positive(goal.press), hand,
+            "a goal's tilt must be above 0 and below 1 rad, its tip not negative, its press above 0 N");
     require(is_positive(goal.give_up), hand, "a goal's giveUp must be finite and above 0 s");
   }
 }
