@@ -39,6 +39,7 @@ class HandDevice final : public Device {
   void carry(const HandleLoad& load) override { arm_->carry(load); }
   void practise(const Practice& practice) override {
     if (seeker_) seeker_->practise(practice);
+    recorded_as_ = practice.name;
   }
   [[nodiscard]] std::string described() const override {
     return hand_.name + (seeker_ ? " (an operator who seeks goals)" : " (an operator)");
@@ -70,7 +71,7 @@ class HandDevice final : public Device {
 
   void declare(Columns& columns) const override {
     if (!seeker_) return;
-    const std::string path = "/state/device/" + name();
+    const std::string path = "/state/device/" + (recorded_as_.empty() ? name() : recorded_as_);
     columns.add(path + "/goal", "1", "the goal that the operator seeks, counted from 1; 0: none is left",
                 [this] { return seeker_->goal(); });
     columns.add(path + "/distance", "m", "what is missing to it, as the operator saw it last",
@@ -96,6 +97,7 @@ class HandDevice final : public Device {
   std::optional<WaypointPath> path_;  ///< or
   std::optional<GoalSeeker> seeker_;
   std::optional<Arm> arm_;
+  std::string recorded_as_;
   double last_t_ = -std::numeric_limits<double>::infinity();
   DeviceReading reading_;
   Wrench felt_;

@@ -250,8 +250,9 @@ void GoalSeeker::correct_place(const View& view) {
   const Vector3d outward = display_.conjugate() * direction;
   const double left = place_.left(t_);
   const double speed = carried.norm();
-  const bool is_carried = (reaction_ + kBraking) * speed > leg_.tolerance;
-  if (is_carried) edge_ = std::min(edge_, (before.own.position - hand_.start.position).norm());
+  // Only out there: what hardware rounds or delays looks like being carried, too.
+  const bool is_out = (before.own.position - hand_.start.position).norm() > edge_ / 2;
+  const bool is_carried = is_out && (reaction_ + kBraking) * speed > leg_.tolerance;
   if (is_carried && carried.dot(direction) > kAligned * speed) return steer(speed, outward, length);
   const bool is_resisted = (display_ * view.felt_force).dot(direction) < -kFelt;
   if (searches(view, lacks, is_resisted, outward)) return;
