@@ -9,6 +9,7 @@ local p = params{
   tremor = 0.0005,          -- m rms, at the hand
   duration = 45.833,        -- s
   half = false,
+  strategy = "path",        -- or "straight", "tilt", "spiral": the operator seeks the hole by what it sees, misjudged to any side
   hybrid = "restore",       -- the dissertation's method; "off", "blend", "exact"
   contact = "voxmap",       -- or "fcl": triangle against triangle, to compare with
   integrator = "semi-implicit",
@@ -20,7 +21,8 @@ local block_height, pin_length = 0.2 * size, 0.4 * size
 local scale = 4
 
 defineSimulationParameters{
-  maxStiffness = 300, maxAngularStiffness = 0.1,
+  -- A pin that is tilted on purpose needs a coupling that turns it against what it is pressed on.
+  maxStiffness = 300, maxAngularStiffness = p.strategy == "path" and 0.1 or 5,
   hybrid = p.hybrid, contact = p.contact, integrator = p.integrator, duration = p.duration,
 }
 
@@ -36,19 +38,30 @@ local pin = addObject{
   Solid.cylinder{radius = hole - p.clearance, height = pin_length},
 }
 
-local omni = Devices.Sensable.PhantomOmni{
-  name = "omni", scale = scale, forces = true,
-  operator = Devices.Hand{
-    name = "operator", ["repeat"] = true,
-    path = {
-      {position = {0, 0, up / scale}, dwell = 0.2},
-      {position = {0, 0, through / scale}, speed = 0.09, dwell = 0.1},
-    },
-    error = {p.approach / scale, 0, 0}, angularError = {0, p.tilt, 0},
-    tremor = p.tremor, angularTremor = 0.2 * p.tilt,
-    lead = 0.02, patience = 1.5,
+local way = {
+  ["repeat"] = true,
+  path = {
+    {position = {0, 0, up / scale}, dwell = 0.2},
+    {position = {0, 0, through / scale}, speed = 0.09, dwell = 0.1},
   },
+  error = {p.approach / scale, 0, 0}, angularError = {0, p.tilt, 0},
+  lead = 0.02, patience = 1.5,
 }
+if p.strategy ~= "path" then
+  local side = 2 * math.pi * math.random()
+  way = {
+    loop = true, watch = "body", start = {0, 0, up / scale}, greatestForce = 3,  -- N: what the Omni can answer
+    goals = {
+      {goal = "insert", strategy = p.strategy, from = {0, 0, up}, to = {position = {0, 0, through}, orientation = AngleAxis(0, Axis{0, 0, 1})},
+       tip = pin_length / 2, press = 1.5, pitch = 1.6 * p.clearance, searchRadius = 1.5 * p.approach, tolerance = 0.002, speed = 0.2, giveUp = p.duration},
+      {goal = "withdraw", to = {0, 0, up}, tolerance = 0.005, speed = 0.2},
+    },
+    error = {p.approach * math.cos(side), p.approach * math.sin(side), 0}, angularError = {0, p.tilt, 0},
+  }
+end
+way.name, way.tremor, way.angularTremor = "operator", p.tremor, 0.2 * p.tilt
+
+local omni = Devices.Sensable.PhantomOmni{ name = "omni", scale = scale, forces = true, operator = Devices.Hand(way) }
 addDevice(omni)
 grasp(omni, pin)
 

@@ -67,6 +67,7 @@ struct HandleLoad {
 
 /// What an operator has learned of the chain around its device before the first frame: what does not change.
 struct Practice {
+  std::string name;     ///< of the chain: what the operator records stands under it
   double gain = 1;      ///< how much further the virtual handle moves than the hand (Device::gain)
   Workspace workspace;  ///< where the virtual handle can be (Device::workspace)
   /// m, of the hand: how far it can go until its position no longer controls the handle's alone

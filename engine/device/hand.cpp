@@ -39,6 +39,7 @@ class HandDevice final : public Device {
   void carry(const HandleLoad& load) override { arm_->carry(load); }
   void practise(const Practice& practice) override {
     if (seeker_) seeker_->practise(practice);
+    recorded_as_ = practice.name;
   }
   [[nodiscard]] std::string described() const override {
     return hand_.name + (seeker_ ? " (an operator who seeks goals)" : " (an operator)");
@@ -70,7 +71,7 @@ class HandDevice final : public Device {
 
   void declare(Columns& columns) const override {
     if (!seeker_) return;
-    const std::string path = "/state/device/" + name();
+    const std::string path = "/state/device/" + (recorded_as_.empty() ? name() : recorded_as_);
     columns.add(path + "/goal", "1", "the goal that the operator seeks, counted from 1; 0: none is left",
                 [this] { return seeker_->goal(); });
     columns.add(path + "/distance", "m", "what is missing to it, as the operator saw it last",
@@ -96,6 +97,7 @@ class HandDevice final : public Device {
   std::optional<WaypointPath> path_;  ///< or
   std::optional<GoalSeeker> seeker_;
   std::optional<Arm> arm_;
+  std::string recorded_as_;
   double last_t_ = -std::numeric_limits<double>::infinity();
   DeviceReading reading_;
   Wrench felt_;
@@ -130,6 +132,10 @@ void check_goals(const HandDescription& hand) {
     require(is_positive(goal.force), hand, "a goal's force must be finite and above 0 N");
     require(goal.speed > 0, hand, "a goal's speed must be above 0 m/s");
     require(is_not_negative(goal.dwell), hand, "a goal's dwell must be finite and not negative");
+    require(is_positive(goal.pitch) && is_positive(goal.search_speed) && is_positive(goal.search_radius), hand,
+            "a goal's pitch, searchSpeed and searchRadius must be finite and above 0");
+    require(is_positive(goal.tilt) && goal.tilt < 1 && is_not_negative(goal.tip) && is_positive(goal.press), hand,
+            "a goal's tilt must be above 0 and below 1 rad, its tip not negative, its press above 0 N");
     require(is_positive(goal.give_up), hand, "a goal's giveUp must be finite and above 0 s");
   }
 }

@@ -44,6 +44,10 @@ inline constexpr std::array kGoalNames = {"reach", "insert", "withdraw", "wander
 enum class Watched { handle, body };  ///< body: of what is held; the handle while nothing is
 inline constexpr std::array kWatchedNames = {"handle", "body"};
 
+/// What an operator does with a peg that does not go in (hand/peg_search.hpp).
+enum class PegStrategy { straight, tilt, spiral };
+inline constexpr std::array kPegStrategyNames = {"straight", "tilt", "spiral"};
+
 /// What a hand wants. Places are the virtual world's, not the hardware's: behind a scale or in a bubble they differ.
 struct HandGoal {
   GoalKind kind = GoalKind::reach;
@@ -59,6 +63,13 @@ struct HandGoal {
   double speed = std::numeric_limits<double>::infinity();  ///< m/s in the virtual world, mean of a movement, at most
   double dwell = 0;                                        ///< s, at the goal
   double give_up = 30;                                     ///< s, after which it goes on to the next goal
+  PegStrategy strategy = PegStrategy::straight;            ///< of an insert
+  double pitch = 0.004;                                    ///< m, of the spiral; at most twice the clearance
+  double search_speed = 0.02;                              ///< m/s, along the spiral; a choice
+  double search_radius = 0.02;                             ///< m, of the spiral; how far a tilted peg slides
+  double tilt = 0.15;                                      ///< rad; a choice
+  double tip = 0;                                          ///< m, from what is watched to the peg's tip
+  double press = 2;                                        ///< N at the hand, along the axis, while it searches; a choice
 };
 
 struct HandDescription {

@@ -84,6 +84,17 @@ void read_box(lua_State* L, Fields& fields, HandGoal& goal) {
   goal.box_max = *max;
 }
 
+void read_search(lua_State* L, Fields& fields, HandGoal& goal) {
+  goal.from = fields.vector("from");
+  goal.strategy = kind_of(L, fields, "strategy", kPegStrategyNames, goal.strategy);
+  goal.pitch = fields.positive("pitch").value_or(goal.pitch);
+  goal.search_speed = fields.positive("searchSpeed").value_or(goal.search_speed);
+  goal.search_radius = fields.positive("searchRadius").value_or(goal.search_radius);
+  goal.tilt = fields.positive("tilt").value_or(goal.tilt);
+  goal.tip = fields.not_negative("tip", goal.tip);
+  goal.press = fields.positive("press").value_or(goal.press);
+}
+
 /// The goal whose fields are in `fields`; more of them may be there.
 HandGoal read_goal(lua_State* L, Fields& fields, const std::string& what) {
   HandGoal goal;
@@ -99,7 +110,7 @@ HandGoal read_goal(lua_State* L, Fields& fields, const std::string& what) {
     goal.turns = place_at(L, lua_gettop(L), fields.name_of("to"), goal.to);
     lua_pop(L, 1);
   }
-  if (goal.kind == GoalKind::insert) goal.from = fields.vector("from");
+  if (goal.kind == GoalKind::insert) read_search(L, fields, goal);
   if (goal.kind == GoalKind::touch) {
     const auto retreat = fields.vector("retreat");
     if (!retreat) raise(L, "{} needs retreat: the place to go to when it has touched", what);

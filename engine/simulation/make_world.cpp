@@ -197,7 +197,7 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
   check_names(scene);
   for (const auto& device : scene.devices) {
     world.hands.emplace_back().device = device;
-    device->practise({.gain = device->gain(), .workspace = device->workspace()});
+    device->practise({.name = device->name(), .gain = device->gain(), .workspace = device->workspace()});
     events.push_back({0, "device", device->described()});
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));

@@ -24,7 +24,7 @@ struct Seeking {
 
   template <typename Wrap>
   Seeking(HandDescription description, Wrap wrap) : hand(make_hand(std::move(description))), chain(wrap(hand)) {
-    chain->practise({.gain = chain->gain(), .workspace = chain->workspace()});
+    chain->practise({.name = chain->name(), .gain = chain->gain(), .workspace = chain->workspace()});
   }
   explicit Seeking(HandDescription description)
       : Seeking(std::move(description), [](std::shared_ptr<Device> device) { return device; }) {}

@@ -18,6 +18,7 @@ constexpr double kProgress = 0.05;                    // of what is missing, in 
 constexpr double kBraking = 0.2;                      // s, that a hand needs to stop what it set going; a choice
 constexpr double kArrival = 1;                        // s, in which it wants to arrive where it is carried; a choice
 constexpr double kFastEnough = 0.3;                   // of the speed that it wants then; a choice
+constexpr double kFound = 0.005;      // m deeper than when the search began: the hole is found; a choice
 constexpr double kAligned = 0.9;                      // cosine; a choice
 constexpr double kMostLess = 0.5;                     // of how far out it is, at once; a choice
 constexpr double kFelt = 1;                           // N, against the hand: something resists; a choice
@@ -36,12 +37,17 @@ GoalSeeker::GoalSeeker(const HandDescription& hand, double reaction, double forc
       place_(hand.start.position),
       turn_(Vector3d::Zero()),
       base_(hand.start.rotation),
+      error_(hand.error),
+      angular_error_(hand.angular_error),
       stream_(hand.seed, hand.name + " goals") {
   VERISIM_ASSERT(!hand.goals.empty());
 }
 
 Pose GoalSeeker::aim() const {
-  return {place_.place(t_), turned(turn_.place(t_), base_)};
+  const PegSearch::Offset offset = search_.at(t_);
+  const Quaterniond back = display_.conjugate();
+  return {place_.place(t_) + back * offset.place / practice_.gain,
+          turned(back * offset.turn, turned(turn_.place(t_), base_))};
 }
 
 void GoalSeeker::see(const DeviceFrame& frame, const Pose& own, const Wrench& felt) {
@@ -113,24 +119,35 @@ Vector3d GoalSeeker::draw() {
 
 void GoalSeeker::begin_leg(const View& view) {
   const HandGoal& goal = wanted();
-  leg_ = {{goal.to.position + hand_.error, turned(hand_.angular_error, goal.to.rotation)}, goal.turns};
+  leg_ = {{goal.to.position + error_, turned(angular_error_, goal.to.rotation)}, goal.turns};
   leg_.tolerance = goal.tolerance;
   leg_.angular_tolerance = goal.angular_tolerance;
   leg_.speed = goal.speed;
   Vector3d from = view.watched.position;
   if (goal.kind == GoalKind::insert && goal.from) {
-    from = *goal.from + hand_.error;
+    from = *goal.from + error_;
     if (leg_number_ == 0) leg_.to.position = from;
   }
   const bool along =
       goal.kind == GoalKind::withdraw || (goal.kind == GoalKind::insert && (leg_number_ == 1 || !goal.from));
   const Vector3d line = leg_.to.position - from;
   if (along && line.norm() > 0) leg_.axis = line.normalized();
+  is_insertion_ = along && goal.kind == GoalKind::insert && line.norm() > 0;
   if (goal.kind == GoalKind::wander) leg_.to.position = goal.box_min + draw().cwiseProduct(goal.box_max - goal.box_min);
   if (goal.kind == GoalKind::touch && leg_number_ == 0) leg_.force = goal.force;
   if (goal.kind == GoalKind::touch && leg_number_ == 1) leg_.to.position = goal.retreat;
   leg_begun_ = true;
   next_decision_ = t_;
+}
+
+/// Back to before the hole, with the place misjudged anew.
+void GoalSeeker::try_again() {
+  search_.clear(t_);
+  error_ = hand_.error.cwiseProduct(2 * draw() - Vector3d::Ones());
+  angular_error_ = hand_.angular_error.cwiseProduct(2 * draw() - Vector3d::Ones());
+  leg_number_ = 0;
+  leg_begun_ = false;
+  stuck_since_ = -1;
 }
 
 void GoalSeeker::end_leg(const View& view) {
@@ -156,7 +173,8 @@ void GoalSeeker::end_goal(Said said, const View& view) {
 void GoalSeeker::hold(const View& view) {
   if (!leg_.axis.isZero(0) || missing(view).norm() > leg_.tolerance) leg_.to.position = view.watched.position;
   leg_.axis.setZero();
-  leg_begun_ = false;
+  is_insertion_ = leg_begun_ = false;
+  search_.clear(t_);
 }
 
 Vector3d GoalSeeker::missing(const View& view) const {
@@ -209,33 +227,35 @@ bool GoalSeeker::progresses(const Vector3d& lacks) const {
 }
 
 void GoalSeeker::decide(const View& view) {
-  const Quaterniond display = (view.handle.rotation * view.own.rotation.conjugate()).normalized();
-  correct_place(view, display);
-  if (leg_.turns) correct_rotation(view, display);
+  display_ = (view.handle.rotation * view.own.rotation.conjugate()).normalized();
+  correct_place(view);
+  if (leg_.turns && !search_.searches()) correct_rotation(view);
 }
 
-void GoalSeeker::correct_place(const View& view, const Quaterniond& display) {
+void GoalSeeker::correct_place(const View& view) {
   const double gain = practice_.gain;
   const auto counted = [&](const Vector3d& v) {
     return leg_.axis.isZero(0) ? v : Vector3d(v.dot(leg_.axis) * leg_.axis);
   };
   const Vector3d lacks = missing(view);
   const Vector3d own_end = place_.end() + view.felt_force / hand_.stiffness;
-  const Vector3d way = counted(gain * (display * (own_end - view.own.position)));
+  const Vector3d way = counted(gain * (display_ * (own_end - view.own.position)));
   const View& before = views_.before(delay_ + window_);
   const Vector3d carried = counted(
-      (view.handle.position - before.handle.position - gain * (display * (view.own.position - before.own.position))) /
+      (view.handle.position - before.handle.position - gain * (display_ * (view.own.position - before.own.position))) /
       (static_cast<double>(window_) * dt_));
   const Vector3d predicted = lacks - way - (reaction_ + kBraking) * carried;
   const double length = lacks.norm();
   const Vector3d direction = length > 0 ? Vector3d(lacks / length) : Vector3d::Zero();
-  const Vector3d outward = display.conjugate() * direction;
+  const Vector3d outward = display_.conjugate() * direction;
   const double left = place_.left(t_);
   const double speed = carried.norm();
-  const bool is_carried = (reaction_ + kBraking) * speed > leg_.tolerance;
-  if (is_carried) edge_ = std::min(edge_, (before.own.position - hand_.start.position).norm());
+  // Only out there: what hardware rounds or delays looks like being carried, too.
+  const bool is_out = (before.own.position - hand_.start.position).norm() > edge_ / 2;
+  const bool is_carried = is_out && (reaction_ + kBraking) * speed > leg_.tolerance;
   if (is_carried && carried.dot(direction) > kAligned * speed) return steer(speed, outward, length);
-  const bool is_resisted = (display * view.felt_force).dot(direction) < -kFelt;
+  const bool is_resisted = (display_ * view.felt_force).dot(direction) < -kFelt;
+  if (searches(view, lacks, is_resisted, outward)) return;
   const bool is_at_edge = (place_.end() - hand_.start.position).norm() >= edge_ * (1 - 1e-9);
   if (predicted.dot(direction) > 0 &&
       (is_resisted || (is_at_edge && (place_.end() - hand_.start.position).dot(outward) > 0))) {
@@ -249,12 +269,38 @@ void GoalSeeker::correct_place(const View& view, const Quaterniond& display) {
   if (off > bearable) {
     const double T = std::max(movement_time(off, leg_.tolerance), off / leg_.speed);
     const Vector3d& home = hand_.start.position;
-    const Vector3d out = place_.end() + display.conjugate() * predicted / gain - home;
+    const Vector3d out = place_.end() + display_.conjugate() * predicted / gain - home;
     const double farthest = std::max(edge_, (place_.end() - home).norm());  // further out only by pushing
     move_aim(home + std::min(1.0, farthest / out.norm()) * out, std::max(is_carried ? 0 : left, T));
   } else if (left == 0 && length > leg_.tolerance && !progresses(lacks)) {
     push(outward);
   }
+}
+
+/// Of an insert: what is done while the peg does not go in. True while the hand searches, which leaves the axis to it.
+bool GoalSeeker::searches(const View& view, const Vector3d& lacks, bool is_resisted, const Vector3d& outward) {
+  if (!is_insertion_) return false;
+  const double along = lacks.dot(leg_.axis);
+  if (search_.searches() && search_.can_find(t_ - reaction_) && lacked_ - along > kFound) {
+    search_.keep(t_, t_ - reaction_);
+    stuck_since_ = -1;
+    return false;
+  }
+  if (!search_.searches()) {
+    const bool is_stuck = is_resisted && !progresses(lacks);
+    stuck_since_ = !is_stuck ? -1 : stuck_since_ < 0 ? t_ : stuck_since_;
+    if (is_stuck && t_ - stuck_since_ > hand_.patience) try_again();
+    if (!is_stuck || wanted().strategy == PegStrategy::straight) return false;
+    search_.begin(t_, wanted(), leg_.axis);
+    lacked_ = along;
+  }
+  if (search_.is_exhausted(t_)) {
+    try_again();
+    return true;
+  }
+  const double lead = (place_.end() - view.own.position).dot(outward);
+  move_aim(place_.end() + (wanted().press / hand_.stiffness - lead) * outward, kInterval);
+  return true;
 }
 
 /// The handle moves without the hand, and how fast depends on how far out the hand is. It wants to arrive in kArrival:
@@ -273,11 +319,11 @@ void GoalSeeker::steer(double speed, const Vector3d& outward, double length) {
   }
 }
 
-void GoalSeeker::correct_rotation(const View& view, const Quaterniond& display) {
+void GoalSeeker::correct_rotation(const View& view) {
   const Vector3d lacks = vector_from_rotation(leg_.to.rotation * view.watched.rotation.conjugate());
   const Quaterniond end = turned(turn_.end(), base_);
   const Vector3d way = vector_from_rotation(end * view.own.rotation.conjugate());
-  const Vector3d predicted = display.conjugate() * lacks - way;
+  const Vector3d predicted = display_.conjugate() * lacks - way;
   const double left = turn_.left(t_);
   const double on_the_way = (turn_.end() - turn_.place(t_)).norm();
   const double bearable = left > 0 ? leg_.angular_tolerance + kInFlight * on_the_way : leg_.angular_tolerance / 2;

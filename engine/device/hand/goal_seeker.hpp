@@ -16,6 +16,7 @@
 
 #include "engine/device/hand.hpp"
 #include "engine/device/hand/minimum_jerk.hpp"
+#include "engine/device/hand/peg_search.hpp"
 #include "engine/device/hand/views.hpp"
 
 namespace verisim {
@@ -61,11 +62,13 @@ class GoalSeeker {
   void end_leg(const View& view);
   void end_goal(Said said, const View& view);
   void hold(const View& view);
+  void try_again();
   [[nodiscard]] bool arrived(const View& view, const View& before) const;
   void decide(const View& view);
-  void correct_place(const View& view, const Quaterniond& display);
+  void correct_place(const View& view);
   void steer(double speed, const Vector3d& outward, double length);
-  void correct_rotation(const View& view, const Quaterniond& display);
+  [[nodiscard]] bool searches(const View& view, const Vector3d& lacks, bool is_resisted, const Vector3d& outward);
+  void correct_rotation(const View& view);
   [[nodiscard]] bool progresses(const Vector3d& lacks) const;
   [[nodiscard]] Vector3d missing(const View& view) const;
   [[nodiscard]] double movement_time(double distance, double tolerance) const;
@@ -86,10 +89,15 @@ class GoalSeeker {
   std::size_t goal_ = 0;
   Leg leg_;
   int leg_number_ = 0;  ///< of the goal
-  bool goal_begun_ = false, leg_begun_ = false;
+  bool goal_begun_ = false, leg_begun_ = false, is_insertion_ = false;
   double goal_start_ = 0, next_decision_ = 0, dwelling_until_ = 0;
   double distance_ = 0;
   double edge_ = std::numeric_limits<double>::infinity();  ///< m from its start: further out the handle is carried
+  PegSearch search_;
+  Quaterniond display_ = Quaterniond::Identity();  ///< from device coordinates to the virtual world, as seen last
+  double lacked_ = 0;                              ///< m, along the axis when the search began
+  double stuck_since_ = -1;                        ///< s; below 0: it is not
+  Vector3d error_, angular_error_;
   std::uint32_t places_ = 0;                               ///< of a wander, reached
   RandomStream stream_;
   std::uint64_t draws_ = 0;
