@@ -58,6 +58,10 @@ struct HandGoal {
   std::uint32_t places = 0;                                         ///< of a wander; 0: no end
   Vector3d retreat = Vector3d::Zero();                              ///< m, of a touch
   double force = 2;                                                 ///< N, of a touch: felt at the hand
+  /// s, of a touch: standing still for so long, as seen, within `near` (m) of the place it has touched; infinity: only
+  /// force or place tell.
+  double stall = std::numeric_limits<double>::infinity();
+  double near = std::numeric_limits<double>::infinity();
   double tolerance = 0.005;                                         ///< m: so near is there
   double angular_tolerance = 0.05;                                  ///< rad
   double speed = std::numeric_limits<double>::infinity();  ///< m/s in the virtual world, mean of a movement, at most

@@ -4,11 +4,13 @@
 // `published` are the parameters that the figure was drawn from. `here` is measured: the handle of a bubble around a
 // hand that holds still, between two frames.
 #include <algorithm>
+#include <array>
 
 #include "engine/base/error.hpp"
 #include "engine/device/bubble.hpp"
 #include "engine/device/sources.hpp"
 #include "engine/record/output_place.hpp"
+#include "engine/reproduce/chart.hpp"
 #include "engine/reproduce/reproductions.hpp"
 
 namespace verisim::reproduce {
@@ -38,7 +40,9 @@ double measured_rate(BubbleLawKind kind, double scale, double x) {
 
 std::vector<Row> r6_bubble_laws(const Workshop& workshop) {
   const std::string file = workshop.file("r6_bubble_laws.csv");
+  const std::string figure = workshop.file("r6_figure_4_6.svg");
   std::string csv = "outside_m,quadratic,peak_ring,peak_ring_as_printed\n";
+  std::vector<Curve> curves = {{"quadratic", {}}, {"peak ring", {}}, {"peak ring as printed", {}}};
   double peak = 0, peak_at = 0, peak_as_printed = 0;
   const int count = workshop.quick ? 400 : 4000;
   for (int i = 0; i <= count; ++i) {
@@ -47,13 +51,17 @@ std::vector<Row> r6_bubble_laws(const Workshop& workshop) {
     const double ring = measured_rate(BubbleLawKind::peak_ring, 1.5, x);
     const double as_printed = measured_rate(BubbleLawKind::peak_ring_as_printed, 1.5, x);
     csv += fmt::format("{},{},{},{}\n", x, quadratic, ring, as_printed);
+    const std::array rates = {quadratic, ring, as_printed};
+    for (std::size_t c = 0; c < rates.size(); ++c) curves[c].points.emplace_back(x, rates[c]);
     if (ring > peak) peak_at = x;
     peak = std::max(peak, ring);
     if (x < kPeak) peak_as_printed = std::max(peak_as_printed, as_printed);
   }
   write_text(file, csv, workshop.force);
+  write_text(figure, line_chart("distance outside of the bubble [m]", "rate of the bubble [m/s]", curves),
+             workshop.force);
   const auto row = [&](const char* what, const char* unit, double published, double here, std::string why) {
-    return Row{"R6", what, unit, published, here, {}, std::move(why), {file}};
+    return Row{"R6", what, unit, published, here, {}, std::move(why), {file, figure}};
   };
   return {row("peak rate of the peak ring", "m/s", 1.5, peak,
               fmt::format("eq. 4.4 as printed divides by x*^2 where it needs (R x*)^2, and peaks at {:.3g} m/s",

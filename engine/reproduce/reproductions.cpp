@@ -14,6 +14,7 @@ std::span<const Reproduction> reproductions() {
       Reproduction{"R6", "the bubble's laws (figure 4.6)", &r6_bubble_laws},
       Reproduction{"R7", "trackable area and volume", &r7_coverage},
       Reproduction{"R9", "parts whose constraints conflict", &r9_conflicts},
+      Reproduction{"R10", "stickiness of the bubble's laws", &r10_stickiness},
   };
   return kAll;
 }

@@ -36,6 +36,7 @@ struct DeviceNode {
   const char* records = nullptr;      ///< filters: what of theirs is recorded, and so may be in a chain once
   DeviceFactory make;
   std::shared_ptr<Device> device;  ///< null until make_device
+  std::unique_ptr<Columns> recorded;  ///< what the device declares; null until a script asks for it
 
   /// A filter has the name of what it wraps.
   [[nodiscard]] bool is_filter() const { return default_name.empty(); }

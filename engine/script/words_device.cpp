@@ -139,6 +139,55 @@ int button_state(lua_State* L) {
   return 1;
 }
 
+/// The values that start at `at`, as numbers.
+std::vector<double> values_of(const Column& column, const std::byte* at) {
+  std::vector<double> values(column.width);
+  for (std::size_t i = 0; i < column.width; ++i) {
+    const std::byte* from = at + i * size_of(column.dtype);
+    const auto as = [&]<typename T>(T value) {
+      std::memcpy(&value, from, sizeof value);
+      return static_cast<double>(value);
+    };
+    values[i] = column.dtype == Dtype::f64   ? as(double{})
+                : column.dtype == Dtype::u64 ? as(std::uint64_t{})
+                : column.dtype == Dtype::u32 ? as(std::uint32_t{})
+                                             : as(std::uint8_t{});
+  }
+  return values;
+}
+
+/// device:recorded("outside"): what the device itself records, now. A number or a list.
+int recorded(lua_State* L) {
+  const DevicePointer node = device_at(L, 1, "recorded: the device");
+  const std::string name = text_at(L, 2, "recorded: the name");
+  const Device* device = running(L, *node);
+  if (device == nullptr) raise(L, "recorded: a device records nothing before the simulation runs");
+  if (!node->recorded) {
+    node->recorded = std::make_unique<Columns>();
+    device->declare(*node->recorded);
+  }
+  const Columns& columns = *node->recorded;
+  std::vector<std::byte> row(columns.state_bytes());
+  columns.put_state(row.data());
+  std::vector<std::string> known;
+  std::size_t offset = 0;
+  for (const Column& column : columns.state()) {
+    known.push_back(column.path.substr(column.path.rfind('/') + 1));
+    if (known.back() == name) {
+      const std::vector<double> values = values_of(column, row.data() + offset);
+      if (values.size() == 1) return lua_pushnumber(L, values[0]), 1;
+      lua_createtable(L, static_cast<int>(values.size()), 0);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        lua_pushnumber(L, values[i]);
+        lua_rawseti(L, -2, static_cast<int>(i + 1));
+      }
+      return 1;
+    }
+    offset += column.bytes();
+  }
+  raise(L, "device '{}' records no '{}'{}", device->name(), name, suggestion(name, known));
+}
+
 int device_member(lua_State* L) {
   const DevicePointer node = device_at(L, 1, "what a device's word is called on");
   const std::string name = text_at(L, 2, "a device's member");
@@ -163,10 +212,12 @@ int device_member(lua_State* L) {
     push(L, Vector3d(rendered.torque));
   else if (name == "getButtonState")
     push_function<button_state, Charge::call>(L);
+  else if (name == "recorded")
+    push_function<recorded, Charge::call>(L);
   else
     raise(L, "a device has no '{}'{}", name,
           suggestion(name, {"name", "handle", "pose", "raw", "position", "orientation", "matrix", "forces", "torques",
-                            "getButtonState"}));
+                            "getButtonState", "recorded"}));
   return 1;
 }
 

@@ -116,6 +116,8 @@ HandGoal read_goal(lua_State* L, Fields& fields, const std::string& what) {
     if (!retreat) raise(L, "{} needs retreat: the place to go to when it has touched", what);
     goal.retreat = *retreat;
     goal.force = fields.positive("force").value_or(goal.force);
+    goal.stall = fields.positive("stall").value_or(goal.stall);
+    goal.near = fields.positive("near").value_or(goal.near);
   }
   goal.tolerance = fields.positive("tolerance").value_or(goal.tolerance);
   goal.angular_tolerance = fields.positive("angularTolerance").value_or(goal.angular_tolerance);

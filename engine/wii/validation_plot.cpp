@@ -6,52 +6,27 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/svg.hpp"
+
 namespace verisim::wii {
 namespace {
 
-/// Okabe and Ito's colours: told apart by everybody.
-constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                 "#E69F00", "#56B4E9", "#000000", "#999999"};
+using svg::colour;
+using svg::dot;
+using svg::legend;
+using svg::line;
+using svg::picture;
+using svg::text;
+
 constexpr double kErrorMin = 1e-4;  ///< m: left or lower end of every error axis
 constexpr double kErrorMax = 2;     ///< m
 constexpr std::array kTicks = {1e-4, 1e-3, 1e-2, 1e-1, 1.0};
 constexpr int kSteps = 400;  ///< of a history
 
-const char* colour(std::size_t i) {
-  return kColours[i % kColours.size()];
-}
-
 /// Share of the way along an error axis, 0 to 1.
 double along(double error) {
   const double clamped = std::clamp(error, kErrorMin, kErrorMax);
   return pinned::log(clamped / kErrorMin) / pinned::log(kErrorMax / kErrorMin);
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* stroke, double width) {
-  return fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"{}\"/>\n", x1, y1, x2, y2,
-                     stroke, width);
-}
-
-std::string text(double x, double y, const char* anchor, const std::string& words, const char* fill = "#222") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n", x, y, anchor, fill,
-                     words);
-}
-
-std::string picture(double width, double height, const std::string& content) {
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "font-family=\"sans-serif\" font-size=\"11\" fill=\"none\">\n"
-      "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#fff\"/>\n{2}</svg>\n",
-      width, height, content);
-}
-
-std::string legend(const std::vector<std::string>& names, double x, double y) {
-  std::string svg;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    svg += line(x, y - 4, x + 18, y - 4, colour(i), 3) + text(x + 23, y, "start", names[i]);
-    x += 40 + 6.2 * static_cast<double>(names[i].size());
-  }
-  return svg;
 }
 
 /// Different values of one member, in order of first appearance.
@@ -124,7 +99,7 @@ std::string overview_plot(const std::vector<ValidationRow>& rows) {
     const char* stroke = colour(static_cast<std::size_t>(which));
     const double x = x0 + kPanel * along(row.position.rms);
     svg += line(x, y, x0 + kPanel * along(row.position.max), y, stroke, 1);
-    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\"/>\n", x, y, stroke);
+    svg += dot(x, y, stroke);
   }
   svg += text((kLeft + right - kGap) / 2, bottom + 32, "middle", "position error [cm]: dot rms, line to the maximum");
   return picture(right, bottom + 42, svg);

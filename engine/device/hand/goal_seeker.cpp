@@ -18,10 +18,10 @@ constexpr double kProgress = 0.05;                    // of what is missing, in 
 constexpr double kBraking = 0.2;                      // s, that a hand needs to stop what it set going; a choice
 constexpr double kArrival = 1;                        // s, in which it wants to arrive where it is carried; a choice
 constexpr double kFastEnough = 0.3;                   // of the speed that it wants then; a choice
-constexpr double kFound = 0.005;      // m deeper than when the search began: the hole is found; a choice
-constexpr double kAligned = 0.9;                      // cosine; a choice
-constexpr double kMostLess = 0.5;                     // of how far out it is, at once; a choice
-constexpr double kFelt = 1;                           // N, against the hand: something resists; a choice
+constexpr double kFound = 0.005;   // m deeper than when the search began: the hole is found; a choice
+constexpr double kAligned = 0.9;   // cosine; a choice
+constexpr double kMostLess = 0.5;  // of how far out it is, at once; a choice
+constexpr double kFelt = 1;        // N, against the hand: something resists; a choice
 constexpr double kInFlight = 0.1;  // of what is left of a movement: errors below that wait for its end; a choice
 
 Quaterniond turned(const Vector3d& by, const Quaterniond& q) {
@@ -65,6 +65,10 @@ void GoalSeeker::advance(const DeviceFrame& frame, const Pose& own, const Wrench
            "hand '{}': a reaction time of {} s, and {} s to see progress, are {} frames; at most {} are kept",
            hand_.name, reaction_, kPatience, frames, Views::kFramesMax - 1);
     const auto in_frames = [&](double s) { return static_cast<std::size_t>(std::floor(s / dt_ + 0.5)); };
+    for (const HandGoal& goal : hand_.goals)
+      if (std::isfinite(goal.stall) && !(reaction_ + goal.stall < static_cast<double>(Views::kFramesMax) * dt_))
+        fail(ErrorKind::input, "hand '{}': a stall of {} s behind a reaction time of {} s is more than {} frames",
+             hand_.name, goal.stall, reaction_, Views::kFramesMax - 1);
     delay_ = in_frames(reaction_);
     window_ = std::max<std::size_t>(1, in_frames(kWindow));
     patience_ = std::max<std::size_t>(1, in_frames(kPatience));
@@ -134,7 +138,11 @@ void GoalSeeker::begin_leg(const View& view) {
   if (along && line.norm() > 0) leg_.axis = line.normalized();
   is_insertion_ = along && goal.kind == GoalKind::insert && line.norm() > 0;
   if (goal.kind == GoalKind::wander) leg_.to.position = goal.box_min + draw().cwiseProduct(goal.box_max - goal.box_min);
-  if (goal.kind == GoalKind::touch && leg_number_ == 0) leg_.force = goal.force;
+  leg_.from = view.watched.position;
+  if (goal.kind == GoalKind::touch && leg_number_ == 0) {
+    leg_.force = goal.force;
+    leg_.stall = goal.stall;
+  }
   if (goal.kind == GoalKind::touch && leg_number_ == 1) leg_.to.position = goal.retreat;
   leg_begun_ = true;
   next_decision_ = t_;
@@ -182,8 +190,19 @@ Vector3d GoalSeeker::missing(const View& view) const {
   return leg_.axis.isZero(0) ? all : Vector3d(all.dot(leg_.axis) * leg_.axis);
 }
 
+/// Has it come some way and then stood still for so long that it is up against something?
+bool GoalSeeker::stands(const View& view) const {
+  if (!std::isfinite(leg_.stall) || missing(view).norm() > wanted().near) return false;
+  if ((view.watched.position - leg_.from).norm() <= leg_.tolerance) return false;
+  const auto frames = static_cast<std::size_t>(std::floor(leg_.stall / dt_ + 0.5));
+  const auto was_here = [&](std::size_t ago) {
+    return (view.watched.position - views_.before(delay_ + ago).watched.position).norm() <= leg_.tolerance / 2;
+  };
+  return was_here(frames / 2) && was_here(frames);  // what turns round is where it was, too, but not meanwhile
+}
+
 bool GoalSeeker::arrived(const View& view, const View& before) const {
-  if (view.felt_force.norm() >= leg_.force) return true;
+  if (view.felt_force.norm() >= leg_.force || stands(view)) return true;
   const Vector3d lacks = missing(view);
   const bool is_past = !leg_.axis.isZero(0) && lacks.dot(leg_.axis) <= 0;
   if (!is_past && lacks.norm() > leg_.tolerance) return false;

@@ -50,6 +50,8 @@ class GoalSeeker {
     bool turns = false;
     Vector3d axis = Vector3d::Zero();                        ///< unit: only what is along it counts; 0: all
     double force = std::numeric_limits<double>::infinity();  ///< N, that ends it
+    double stall = std::numeric_limits<double>::infinity();  ///< s of standing still that end it
+    Vector3d from = Vector3d::Zero();                        ///< m, of what is watched
     double tolerance = 0, angular_tolerance = 0, speed = 0;  ///< as in HandGoal
   };
   enum class Said : std::uint8_t { begins, beyond, reaches, gives_up };
@@ -63,6 +65,7 @@ class GoalSeeker {
   void end_goal(Said said, const View& view);
   void hold(const View& view);
   void try_again();
+  [[nodiscard]] bool stands(const View& view) const;
   [[nodiscard]] bool arrived(const View& view, const View& before) const;
   void decide(const View& view);
   void correct_place(const View& view);
@@ -98,7 +101,7 @@ class GoalSeeker {
   double lacked_ = 0;                              ///< m, along the axis when the search began
   double stuck_since_ = -1;                        ///< s; below 0: it is not
   Vector3d error_, angular_error_;
-  std::uint32_t places_ = 0;                               ///< of a wander, reached
+  std::uint32_t places_ = 0;  ///< of a wander, reached
   RandomStream stream_;
   std::uint64_t draws_ = 0;
   std::array<std::pair<Said, GoalKind>, 4> said_{};

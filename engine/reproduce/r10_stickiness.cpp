@@ -1,0 +1,187 @@
+// R10: what sticks in the bubble technique (section 4.3.2). An operator carries a box to a wall 3 m away and back
+// (scenarios/bubble_stickiness.lua), with every law, spring, device and cure, 30 operators each.
+//
+// Published in words: after a contact made while the bubble moved, the hand needs as much way back as the bubble moved
+// meanwhile; the peak ring "anecdotally improved" what is felt of a collision, and frees the box sooner.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/error.hpp"
+#include "engine/record/output_place.hpp"
+#include "engine/reproduce/chart.hpp"
+#include "engine/reproduce/reproductions.hpp"
+#include "engine/reproduce/statistics.hpp"
+
+namespace verisim::reproduce {
+namespace {
+
+/// One column of the table; all of one row have the same 30 operators.
+struct Condition {
+  std::string law, device, operators, cure;
+  double stiffness = 50;  ///< N/m
+};
+constexpr std::array kLaws = {"cubic", "quadratic", "linear", "peak-ring"};
+/// A surprised operator believes the wall half a metre further, and turns when the box has stood for half a second.
+constexpr std::array kOperators = {"sees the wall", "is surprised"};
+constexpr std::array kFacts = {"way back", "time back", "bubble moved", "speed", "collision over bubble force",
+                               "saturated"};
+enum Fact { way_back, time_back, bubble_moved, speed, force_ratio, saturated };
+
+struct Outcome {
+  std::vector<std::array<double, kFacts.size()>> released;  ///< of the operators who came to the wall and off it
+  std::size_t tried = 0;
+};
+
+std::vector<Condition> conditions(bool quick) {
+  std::vector<Condition> all;
+  if (quick) {
+    for (const char* law : {"cubic", "quadratic", "peak-ring"}) all.push_back({law, "omni", kOperators[1], "none"});
+    return all;
+  }
+  for (const char* law : kLaws)
+    for (const char* device : {"omni", "virtuose", "ideal"})
+      for (const char* operators : kOperators)
+        for (const double stiffness : {25.0, 50.0, 100.0}) all.push_back({law, device, operators, "none", stiffness});
+  for (const char* law : kLaws)
+    for (const char* operators : kOperators)
+      for (const char* cure : {"bubble stops in collision", "bump of 2 N"})
+        all.push_back({law, "omni", operators, cure});
+  return all;
+}
+
+RunRequest request_of(const Condition& c, const std::string& file, std::uint64_t seed) {
+  RunRequest request{.scenario = "bubble_stickiness",
+                     .file = file,
+                     .sets = {{"law", c.law}, {"device", c.device}, {"stiffness", fmt::format("{}", c.stiffness)}}};
+  if (c.operators == kOperators[1]) request.sets.emplace_back("surprise", "0.5");
+  if (c.cure == "bubble stops in collision") request.sets.emplace_back("stop", "true");
+  if (c.cure == "bump of 2 N") request.sets.emplace_back("bump", "2");
+  request.seed = seed;
+  return request;
+}
+
+Outcome run_all(const Workshop& workshop, const Condition& c, std::uint64_t seeds, const std::string& file,
+                std::string& csv) {
+  Outcome outcome;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const TimedRun run = workshop.run(request_of(c, file, seed));
+    ++outcome.tried;
+    csv += fmt::format("{},{},{},{},{},{},{}", c.law, c.device, c.operators, c.cure, c.stiffness, seed, run.outcome);
+    const bool is_released = run.outcome == "released";
+    if (is_released) outcome.released.emplace_back();
+    for (std::size_t f = 0; f < kFacts.size(); ++f) {
+      if (is_released) outcome.released.back()[f] = run.measure(kFacts[f]);
+      csv += is_released ? fmt::format(",{}", outcome.released.back()[f]) : ",";
+    }
+    csv += fmt::format(",{}\n", run.state_hash);
+  }
+  return outcome;
+}
+
+std::vector<double> samples(const Outcome& outcome, Fact fact) {
+  std::vector<double> all;
+  for (const auto& facts : outcome.released) all.push_back(facts[static_cast<std::size_t>(fact)]);
+  return all;
+}
+Estimate mean(const Outcome& outcome, Fact fact) {
+  const std::vector<double> all = samples(outcome, fact);
+  return all.size() < 2 ? Estimate{} : mean_of(all);
+}
+
+std::string name_of(const Condition& c) {
+  std::string name = fmt::format("{}, {}, {:g} N/m", c.device, c.operators, c.stiffness);
+  return c.cure == "none" ? name : name + ", " + c.cure;
+}
+
+/// A figure for each condition with a dot for each law.
+std::string figure_of(const std::vector<Condition>& all, const std::vector<Outcome>& outcomes, Fact fact,
+                      const std::string& label) {
+  std::vector<std::string> laws, names;
+  const auto place = [](std::vector<std::string>& list, const std::string& name) {
+    const auto found = std::find(list.begin(), list.end(), name);
+    if (found != list.end()) return static_cast<std::size_t>(found - list.begin());
+    list.push_back(name);
+    return list.size() - 1;
+  };
+  std::vector<std::vector<Estimate>> estimates;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t row = place(names, name_of(all[i])), law = place(laws, all[i].law);
+    estimates.resize(std::max(estimates.size(), row + 1));
+    estimates[row].resize(std::max(estimates[row].size(), law + 1));
+    estimates[row][law] = mean(outcomes[i], fact);
+  }
+  std::vector<IntervalRow> rows;
+  for (std::size_t row = 0; row < names.size(); ++row) {
+    estimates[row].resize(laws.size());
+    rows.push_back({names[row], estimates[row]});
+  }
+  return interval_chart(label, laws, rows);
+}
+
+}  // namespace
+
+std::vector<Row> r10_stickiness(const Workshop& workshop) {
+  const std::uint64_t seeds = workshop.quick ? 3 : 30;
+  const std::string file = workshop.file("r10_stickiness.h5"), table = workshop.file("r10_stickiness.csv");
+  const std::vector<Condition> all = conditions(workshop.quick);
+  std::vector<Outcome> outcomes;
+  std::string csv = "law,device,operator,cure,stiffness_N_per_m,seed,outcome";
+  for (const char* fact : {"way_back_m", "time_back_s", "bubble_moved_m", "speed_m_per_s",
+                           "collision_over_bubble_force", "saturated_share", "state_hash"})
+    csv += fmt::format(",{}", fact);
+  csv += "\n";
+  for (const Condition& c : all) outcomes.push_back(run_all(workshop, c, seeds, file, csv));
+  write_text(table, csv, workshop.force);
+  std::vector<std::string> files = {table, file};
+  for (const auto& [fact, name, label] :
+       {std::tuple{way_back, "way_back", "way of the hand to release [m]"},
+        std::tuple{time_back, "time_back", "time to release [s]"},
+        std::tuple{speed, "speed", "mean speed to the wall [m/s]"},
+        std::tuple{force_ratio, "force_ratio", "collision force over bubble force"}}) {
+    files.push_back(workshop.file(fmt::format("r10_{}.svg", name)));
+    write_text(files.back(), figure_of(all, outcomes, fact, label), workshop.force);
+  }
+
+  // The rows: the published set-up, an Omni and 50 N/m, with operators who are surprised by the wall.
+  const auto of = [&](const char* law) -> const Outcome& {
+    const auto is_published = [&](const Condition& c) {
+      return c.law == law && c.device == "omni" && c.operators == kOperators[1] && c.stiffness == 50 &&
+             c.cure == "none";
+    };
+    const auto found = std::find_if(all.begin(), all.end(), is_published);
+    VERISIM_ASSERT(found != all.end());
+    return outcomes[static_cast<std::size_t>(found - all.begin())];
+  };
+  std::vector<Row> rows;
+  for (const char* law : {"cubic", "quadratic", "peak-ring"}) {
+    const Outcome& outcome = of(law);
+    const std::vector<double> back = samples(outcome, way_back), moved = samples(outcome, bubble_moved);
+    const std::string released = fmt::format("{} of {} operators came off the wall", back.size(), outcome.tried);
+    if (back.size() < 2) {
+      rows.push_back({"R10",
+                      fmt::format("way back over way of the bubble, {}", law),
+                      "",
+                      1.0,
+                      "nobody came off",
+                      {},
+                      released,
+                      files});
+      continue;
+    }
+    const Estimate share = ratio_of(back, moved);
+    rows.push_back({"R10", fmt::format("way back over way of the bubble, {}", law), "", 1.0, share.value,
+                    share.interval, released + "; with an Omni, 50 N/m, surprised by the wall", files});
+    for (const auto& [fact, what, unit] :
+         {std::tuple{way_back, "way back", "m"}, std::tuple{time_back, "time back", "s"},
+          std::tuple{speed, "mean speed to the wall", "m/s"},
+          std::tuple{force_ratio, "collision force over bubble force at onset", ""}}) {
+      const Estimate e = mean(outcome, fact);
+      rows.push_back({"R10", fmt::format("{}, {}", what, law), unit, "anecdotally", e.value, e.interval,
+                      fmt::format("mean of {} operators", back.size()), files});
+    }
+  }
+  return rows;
+}
+
+}  // namespace verisim::reproduce
