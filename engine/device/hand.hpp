@@ -69,7 +69,7 @@ struct HandGoal {
   double search_radius = 0.02;                             ///< m, of the spiral; how far a tilted peg slides
   double tilt = 0.15;                                      ///< rad; a choice
   double tip = 0;                                          ///< m, from what is watched to the peg's tip
-  double press = 2;                                        ///< N at the hand, along the axis, while it searches; a choice
+  double press = 2;  ///< N at the hand, along the axis, while it searches; a choice
 };
 
 struct HandDescription {

@@ -18,10 +18,10 @@ constexpr double kProgress = 0.05;                    // of what is missing, in 
 constexpr double kBraking = 0.2;                      // s, that a hand needs to stop what it set going; a choice
 constexpr double kArrival = 1;                        // s, in which it wants to arrive where it is carried; a choice
 constexpr double kFastEnough = 0.3;                   // of the speed that it wants then; a choice
-constexpr double kFound = 0.005;      // m deeper than when the search began: the hole is found; a choice
-constexpr double kAligned = 0.9;                      // cosine; a choice
-constexpr double kMostLess = 0.5;                     // of how far out it is, at once; a choice
-constexpr double kFelt = 1;                           // N, against the hand: something resists; a choice
+constexpr double kFound = 0.005;   // m deeper than when the search began: the hole is found; a choice
+constexpr double kAligned = 0.9;   // cosine; a choice
+constexpr double kMostLess = 0.5;  // of how far out it is, at once; a choice
+constexpr double kFelt = 1;        // N, against the hand: something resists; a choice
 constexpr double kInFlight = 0.1;  // of what is left of a movement: errors below that wait for its end; a choice
 
 Quaterniond turned(const Vector3d& by, const Quaterniond& q) {
@@ -330,8 +330,10 @@ void GoalSeeker::correct_rotation(const View& view) {
   const double off = predicted.norm();
   if (off <= bearable) return;
   const Quaterniond now = turned(turn_.place(t_), base_);
-  turn_.move_origin(t_, Vector3d::Zero(), vector_from_rotation(turned(predicted, end) * now.conjugate()),
-                    std::max(left, movement_time(off, leg_.angular_tolerance)));
+  const Quaterniond from_now = now.conjugate();
+  turn_.correct_from(t_, Vector3d::Zero(), vector_from_rotation(end * from_now),
+                     vector_from_rotation(turned(predicted, end) * from_now),
+                     std::max(left, movement_time(off, leg_.angular_tolerance)));
   base_ = now;
 }
 

@@ -98,7 +98,7 @@ class GoalSeeker {
   double lacked_ = 0;                              ///< m, along the axis when the search began
   double stuck_since_ = -1;                        ///< s; below 0: it is not
   Vector3d error_, angular_error_;
-  std::uint32_t places_ = 0;                               ///< of a wander, reached
+  std::uint32_t places_ = 0;  ///< of a wander, reached
   RandomStream stream_;
   std::uint64_t draws_ = 0;
   std::array<std::pair<Said, GoalKind>, 4> said_{};
