@@ -53,7 +53,7 @@ if p.strategy ~= "path" then
     loop = true, watch = "body", start = {0, 0, up / scale}, greatestForce = 3,  -- N: what the Omni can answer
     goals = {
       {goal = "insert", strategy = p.strategy, from = {0, 0, up}, to = {position = {0, 0, through}, orientation = AngleAxis(0, Axis{0, 0, 1})},
-       tip = pin_length / 2, press = 1.5, pitch = 1.6 * p.clearance, searchRadius = 1.5 * p.approach, tolerance = 0.002, speed = 0.2, giveUp = p.duration},
+       tip = pin_length / 2, press = 1.5, pitch = 1.6 * p.clearance, searchRadius = 1.5 * p.approach, searchSpeed = 0.05, tolerance = 0.002, speed = 0.2, giveUp = p.duration},
       {goal = "withdraw", to = {0, 0, up}, tolerance = 0.005, speed = 0.2},
     },
     error = {p.approach * math.cos(side), p.approach * math.sin(side), 0}, angularError = {0, p.tilt, 0},

@@ -7,6 +7,7 @@
 #include "engine/base/error.hpp"
 #include "engine/device/hand/arm.hpp"
 #include "engine/device/hand/goal_seeker.hpp"
+#include "engine/device/hand/person.hpp"
 #include "engine/device/hand/tremor.hpp"
 #include "engine/device/hand/waypoint_path.hpp"
 
@@ -158,6 +159,7 @@ std::shared_ptr<Device> make_hand(HandDescription hand) {
   require(is_not_negative(hand.tremor) && is_not_negative(hand.angular_tremor), hand, "tremor must not be negative");
   require(hand.lead > 0 && hand.patience > 0, hand, "lead and patience must be above 0");
   require(hand.error.allFinite() && hand.angular_error.allFinite(), hand, "error is not finite");
+  become(hand);
   return std::make_shared<HandDevice>(std::move(hand));
 }
 

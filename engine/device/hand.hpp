@@ -73,8 +73,16 @@ struct HandGoal {
   double search_radius = 0.02;                             ///< m, of the spiral; how far a tilted peg slides
   double tilt = 0.15;                                      ///< rad; a choice
   double tip = 0;                                          ///< m, from what is watched to the peg's tip
-  double press = 2;                                        ///< N at the hand, along the axis, while it searches; a choice
+  double press = 2;  ///< N at the hand, along the axis, while it searches; a choice
 };
+
+/// Where mass, damping and stiffness come from (hand/person.hpp).
+enum class ArmKind {
+  given,     ///< the fields of the description
+  measured,  ///< of one person
+  drawn      ///< another person for each seed
+};
+inline constexpr std::array kArmNames = {"given", "measured", "drawn"};
 
 struct HandDescription {
   std::string name = "hand";
@@ -83,6 +91,7 @@ struct HandDescription {
   Pose start;                      ///< of a hand with goals, device coordinates
   Watched watched = Watched::handle;
   bool repeat = false;              ///< after the last waypoint or goal on to the first, until the run ends
+  ArmKind arm = ArmKind::given;
   double mass = 0.15;               ///< kg, fingers and handle
   double inertia = 1e-3;            ///< kg m^2
   double stiffness = 400;           ///< N/m

@@ -166,7 +166,13 @@ void read_aim(lua_State* L, Fields& fields, HandDescription& hand) {
 }
 
 // A muscle that is given another stiffness or mass stays critically damped unless its damping is given too.
-void read_impedance(Fields& fields, HandDescription& hand) {
+void read_impedance(lua_State* L, Fields& fields, HandDescription& hand) {
+  hand.arm = kind_of(L, fields, "arm", kArmNames, hand.arm);
+  if (hand.arm != ArmKind::given)
+    for (const char* name : {"mass", "stiffness", "damping"})
+      if (has(fields, L, name))
+        raise(L, "{}: arm = \"{}\" has a {} of its own; leave one of them out", kWord,
+              kArmNames[static_cast<std::size_t>(hand.arm)], name);
   hand.mass = fields.positive("mass").value_or(hand.mass);
   hand.stiffness = fields.positive("stiffness").value_or(hand.stiffness);
   hand.damping = fields.not_negative("damping", 2 * std::sqrt(hand.stiffness * hand.mass));
@@ -184,7 +190,7 @@ int hand_device(lua_State* L) {
   // `repeat` is a keyword of Lua: as a key it needs ["repeat"].
   hand.repeat = fields.boolean("loop").value_or(false);
   hand.repeat = fields.boolean("repeat").value_or(hand.repeat);
-  read_impedance(fields, hand);
+  read_impedance(L, fields, hand);
   hand.lead = fields.positive("lead").value_or(hand.lead);
   hand.patience = fields.positive("patience").value_or(hand.patience);
   hand.force_max = fields.positive("greatestForce");

@@ -37,8 +37,8 @@ HandDescription stiff(HandDescription hand) {
   return hand;
 }
 
-// Flash & Hogan 1985: x = d (10 s^3 - 15 s^4 + 6 s^5), v peaks at 1.875 d/T in the middle. T by Fitts' law with the
-// numbers of MacKenzie 1992, worked here: 0.0128 + 0.0947 log2(2 d / W), W = 2 tolerance.
+// Flash & Hogan 1985: x = d (10 s^3 - 15 s^4 + 6 s^5), v peaks at 1.875 d/T in the middle. T by Fitts' law: a tenth
+// of a second for each bit, log2(2 d / W), W = 2 tolerance.
 TEST(Goals, AMovementInTheFreeIsOneMinimumJerkOfFittsDuration) {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
     SCOPED_TRACE(seed);
@@ -48,7 +48,7 @@ TEST(Goals, AMovementInTheFreeIsOneMinimumJerkOfFittsDuration) {
     hand.reaction = 0.25;
     Seeking life(hand);
     life.seconds(3);
-    const double d = to.norm(), T = std::max(0.1, 0.0128 + 0.0947 * std::log2(d / 0.005));
+    const double d = to.norm(), T = std::max(0.1, 0.1 * std::log2(d / 0.005));
     double peak = 0, onset = -1, worst = 0;
     for (std::size_t i = 1; i < life.own.size(); ++i) {
       const double moved = (life.own[i].position - life.own[i - 1].position).norm();

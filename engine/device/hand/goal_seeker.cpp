@@ -8,8 +8,8 @@
 namespace verisim {
 namespace {
 
-// Fitts' law, T = a + b log2(2 D / W). a and b: Fitts' reciprocal tapping of 1954, as MacKenzie 1992 fits it.
-constexpr double kFittsA = 0.0128, kFittsB = 0.0947;  // s, s/bit
+// Fitts' law (1954), T = b log2(2 D / W). The slope is the order of magnitude of what is reported for a hand.
+constexpr double kFittsSlope = 0.1;  // s/bit
 constexpr double kShortest = 0.1;                     // s, order of magnitude of the shortest correction
 constexpr double kInterval = 0.1;                     // s, between corrections; a choice
 constexpr double kWindow = 0.1;                       // s, over which a velocity is seen
@@ -217,7 +217,7 @@ bool GoalSeeker::arrived(const View& view, const View& before) const {
 
 double GoalSeeker::movement_time(double distance, double tolerance) const {
   const double bits = pinned::log(std::max(1.0, distance / tolerance)) / pinned::log(2.0);  // W = 2 tolerance
-  return std::max(kShortest, kFittsA + kFittsB * bits);
+  return std::max(kShortest, kFittsSlope * bits);
 }
 
 void GoalSeeker::move_aim(const Vector3d& end, double T) {
@@ -349,8 +349,10 @@ void GoalSeeker::correct_rotation(const View& view) {
   const double off = predicted.norm();
   if (off <= bearable) return;
   const Quaterniond now = turned(turn_.place(t_), base_);
-  turn_.move_origin(t_, Vector3d::Zero(), vector_from_rotation(turned(predicted, end) * now.conjugate()),
-                    std::max(left, movement_time(off, leg_.angular_tolerance)));
+  const Quaterniond from_now = now.conjugate();
+  turn_.correct_from(t_, Vector3d::Zero(), vector_from_rotation(end * from_now),
+                     vector_from_rotation(turned(predicted, end) * from_now),
+                     std::max(left, movement_time(off, leg_.angular_tolerance)));
   base_ = now;
 }
 

@@ -7,10 +7,10 @@
 namespace verisim {
 namespace {
 
-constexpr double kSettling = 0.3;                // s, to a place that is kept; a choice
-constexpr double kCycle = 3;                     // s, of one direction of a tilt; a choice
-constexpr int kDirections = 13;                  // of a tilt, until it gives up
-constexpr double kTurn = 0.38196601125010515;    // of a full turn between directions: the golden section leaves no gap
+constexpr double kSettling = 0.3;              // s, to a place that is kept; a choice
+constexpr double kCycle = 3;                   // s, of one direction of a tilt; a choice
+constexpr int kDirections = 13;                // of a tilt, until it gives up
+constexpr double kTurn = 0.38196601125010515;  // of a full turn between directions: the golden section leaves no gap
 
 /// Minimum jerk from 0 at `from` to 1 at `to`.
 double ramp(double x, double from, double to) {
