@@ -2,7 +2,8 @@
 -- back (dissertation section 4.3.2). While the box touches and the bubble moves on, the handle moves away from the box:
 -- so far the hand has to come back before the box comes off.
 --   ./run scenarios/bubble_stickiness.lua --set law=cubic --set device=virtuose --seed 7
--- With task=assemble it carries a peg to a block 3 m away and puts it into its hole.
+-- Another seed is another person: arm and tremor are drawn. With task=assemble it carries a peg to a block 3 m away and
+-- puts it into its hole.
 -- All laws, stiffnesses, devices and cures over 30 operators: build/verisim reproduce (R10).
 local p = params{
   law = "peak-ring",    -- "linear", "quadratic", "cubic", "peak-ring", "peak-ring-as-printed"
@@ -15,7 +16,6 @@ local p = params{
   maxStiffness = 300,   -- N/m, of the coupling
   task = "touch",       -- or "assemble"
   distance = 3,         -- m
-  tremor = 0.0003,      -- m rms, at the hand
   surprise = 0,         -- m, how far behind the wall the operator believes it to be; 0: it sees where it is
   stall = 0.5,          -- s: so long a surprised operator sees the box stand still until it turns back
   feels = 0,            -- N: turns back when it feels so much, whatever that is; 0: feeling tells it nothing
@@ -50,7 +50,7 @@ local reach = p.device == "virtuose" and 0.2 or 0.08                   -- m, hal
 local scale = p.device == "virtuose" and 3.2 or 10                     -- the bubble fills the same part of it
 local up = p.task == "assemble" and 0.4 or 0
 local hand = Devices.Hand{
-  goals = goals, watch = "body", start = middle, tremor = p.tremor, reach = 1.5 * reach,
+  goals = goals, watch = "body", start = middle, reach = 1.5 * reach, arm = "drawn",
 }
 local dev = models[p.device]{ name = p.device, scale = 1, stops = true, operator = hand }
 dev = scaleDevice{ translateDevice{ dev, translation = {-middle[1], -middle[2], -middle[3]} }, scale = scale }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "engine/base/error.hpp"
 #include "engine/record/output_place.hpp"
@@ -28,10 +30,9 @@ constexpr std::array kFacts = {"way back", "time back", "bubble moved", "speed",
                                "saturated"};
 enum Fact { way_back, time_back, bubble_moved, speed, force_ratio, saturated };
 
-struct Outcome {
-  std::vector<std::array<double, kFacts.size()>> released;  ///< of the operators who came to the wall and off it
-  std::size_t tried = 0;
-};
+using Facts = std::array<double, kFacts.size()>;
+/// By operator; none: it did not come to the wall, or not off it.
+using Outcome = std::vector<std::optional<Facts>>;
 
 std::vector<Condition> conditions(bool quick) {
   std::vector<Condition> all;
@@ -66,32 +67,73 @@ Outcome run_all(const Workshop& workshop, const Condition& c, std::uint64_t seed
   Outcome outcome;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const TimedRun run = workshop.run(request_of(c, file, seed));
-    ++outcome.tried;
     csv += fmt::format("{},{},{},{},{},{},{}", c.law, c.device, c.operators, c.cure, c.stiffness, seed, run.outcome);
-    const bool is_released = run.outcome == "released";
-    if (is_released) outcome.released.emplace_back();
-    for (std::size_t f = 0; f < kFacts.size(); ++f) {
-      if (is_released) outcome.released.back()[f] = run.measure(kFacts[f]);
-      csv += is_released ? fmt::format(",{}", outcome.released.back()[f]) : ",";
+    outcome.emplace_back();
+    if (run.outcome == "released") {
+      outcome.back().emplace();
+      for (std::size_t f = 0; f < kFacts.size(); ++f) (*outcome.back())[f] = run.measure(kFacts[f]);
     }
+    for (std::size_t f = 0; f < kFacts.size(); ++f)
+      csv += outcome.back() ? fmt::format(",{}", (*outcome.back())[f]) : ",";
     csv += fmt::format(",{}\n", run.state_hash);
   }
   return outcome;
 }
 
-std::vector<double> samples(const Outcome& outcome, Fact fact) {
+/// Of the operators who came off the wall here and in `beside`.
+std::vector<double> samples(const Outcome& outcome, Fact fact, const Outcome& beside) {
   std::vector<double> all;
-  for (const auto& facts : outcome.released) all.push_back(facts[static_cast<std::size_t>(fact)]);
+  for (std::size_t i = 0; i < outcome.size(); ++i)
+    if (outcome[i] && beside[i]) all.push_back((*outcome[i])[static_cast<std::size_t>(fact)]);
   return all;
 }
 Estimate mean(const Outcome& outcome, Fact fact) {
-  const std::vector<double> all = samples(outcome, fact);
+  const std::vector<double> all = samples(outcome, fact, outcome);
   return all.size() < 2 ? Estimate{} : mean_of(all);
+}
+
+/// A row with an estimate, or without one if too few operators came through.
+Row row_of(std::string what, std::string unit, Figure published, std::size_t came_off, std::size_t tried,
+           const std::function<Estimate()>& estimate, const std::vector<std::string>& files) {
+  Row row{"R10", std::move(what), std::move(unit), std::move(published), "too few came off", {}, {}, files};
+  row.why = fmt::format("{} of {} operators", came_off, tried);
+  if (came_off < 2) return row;
+  const Estimate e = estimate();
+  row.here = e.value;
+  row.interval = e.interval;
+  row.why += fmt::format(", 95 % interval [{:.3g}, {:.3g}]", e.interval.first, e.interval.second);
+  return row;
 }
 
 std::string name_of(const Condition& c) {
   std::string name = fmt::format("{}, {}, {:g} N/m", c.device, c.operators, c.stiffness);
   return c.cure == "none" ? name : name + ", " + c.cure;
+}
+
+/// Times of those who carry a peg 3 m through the bubble and put it into its hole, one row a law.
+std::vector<Row> assembly_rows(const Workshop& workshop, std::uint64_t seeds) {
+  const std::string file = workshop.file("r10_assembly.h5"), table = workshop.file("r10_assembly.csv");
+  std::string csv = "law,seed,outcome,time_s,state_hash\n";
+  std::vector<Row> rows;
+  std::vector<const char*> laws = {"peak-ring"};
+  if (!workshop.quick) laws = {"cubic", "quadratic", "linear", "peak-ring"};
+  for (const char* law : laws) {
+    std::vector<double> times;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      RunRequest request = request_of({law, "omni", kOperators[0], "none"}, file, seed);
+      request.sets.emplace_back("task", "assemble");
+      const TimedRun run = workshop.run(request);
+      const bool is_assembled = run.outcome == "assembled";
+      if (is_assembled) times.push_back(run.measure("time to assemble"));
+      csv += fmt::format("{},{},{},{},{}\n", law, seed, run.outcome,
+                         is_assembled ? fmt::format("{}", times.back()) : "", run.state_hash);
+    }
+    Row row = row_of(fmt::format("time to assemble across 3 m, {}", law), "s", "anecdotally", times.size(), seeds,
+                     [&] { return mean_of(times); }, {table, file});
+    rows.push_back(std::move(row));
+  }
+  write_text(table, csv, workshop.force);
+  return rows;
 }
 
 /// A figure for each condition with a dot for each law.
@@ -122,7 +164,7 @@ std::string figure_of(const std::vector<Condition>& all, const std::vector<Outco
 }  // namespace
 
 std::vector<Row> r10_stickiness(const Workshop& workshop) {
-  const std::uint64_t seeds = workshop.quick ? 3 : 30;
+  const std::uint64_t seeds = workshop.quick ? 2 : 30;
   const std::string file = workshop.file("r10_stickiness.h5"), table = workshop.file("r10_stickiness.csv");
   const std::vector<Condition> all = conditions(workshop.quick);
   std::vector<Outcome> outcomes;
@@ -153,34 +195,31 @@ std::vector<Row> r10_stickiness(const Workshop& workshop) {
     VERISIM_ASSERT(found != all.end());
     return outcomes[static_cast<std::size_t>(found - all.begin())];
   };
+  const Outcome &cubic = of("cubic"), &ring = of("peak-ring");
   std::vector<Row> rows;
   for (const char* law : {"cubic", "quadratic", "peak-ring"}) {
     const Outcome& outcome = of(law);
-    const std::vector<double> back = samples(outcome, way_back), moved = samples(outcome, bubble_moved);
-    const std::string released = fmt::format("{} of {} operators came off the wall", back.size(), outcome.tried);
-    if (back.size() < 2) {
-      rows.push_back({"R10",
-                      fmt::format("way back over way of the bubble, {}", law),
-                      "",
-                      1.0,
-                      "nobody came off",
-                      {},
-                      released,
-                      files});
-      continue;
-    }
-    const Estimate share = ratio_of(back, moved);
-    rows.push_back({"R10", fmt::format("way back over way of the bubble, {}", law), "", 1.0, share.value,
-                    share.interval, released + "; with an Omni, 50 N/m, surprised by the wall", files});
+    const std::vector<double> back = samples(outcome, way_back, outcome),
+                              moved = samples(outcome, bubble_moved, outcome);
+    rows.push_back(row_of(
+        fmt::format("way back over way of the bubble, {}", law), "", 1.0, back.size(), outcome.size(),
+        [&] { return ratio_of(back, moved); }, files));
     for (const auto& [fact, what, unit] :
          {std::tuple{way_back, "way back", "m"}, std::tuple{time_back, "time back", "s"},
-          std::tuple{speed, "mean speed to the wall", "m/s"},
+          std::tuple{speed, "mean speed to the wall", "m/s"}, std::tuple{saturated, "share of frames saturated", ""},
           std::tuple{force_ratio, "collision force over bubble force at onset", ""}}) {
-      const Estimate e = mean(outcome, fact);
-      rows.push_back({"R10", fmt::format("{}, {}", what, law), unit, "anecdotally", e.value, e.interval,
-                      fmt::format("mean of {} operators", back.size()), files});
+      rows.push_back(row_of(
+          fmt::format("{}, {}", what, law), unit, "anecdotally", back.size(), outcome.size(),
+          [&, f = fact] { return mean(outcome, f); }, files));
     }
   }
+  for (const auto& [fact, what] : {std::tuple{way_back, "way back"}, std::tuple{time_back, "time back"}}) {
+    const std::vector<double> a = samples(ring, fact, cubic), b = samples(cubic, fact, ring);
+    rows.push_back(row_of(
+        fmt::format("{}, peak ring over cubic, same operators", what), "", "less", a.size(), ring.size(),
+        [&] { return ratio_of(a, b); }, files));
+  }
+  for (Row& row : assembly_rows(workshop, seeds)) rows.push_back(std::move(row));
   return rows;
 }
 
