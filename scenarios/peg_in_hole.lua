@@ -74,6 +74,7 @@ Actions.addFrameAction(function()
     if bottom > block_height / 2 then above = true end
     if above and bottom < -block_height / 2 then
       above, passes = false, passes + 1
+      if passes == 1 and p.strategy ~= "path" then measure("first pass", simulation.time, "s") end
       event("passed", string.format("pin is through for the %d. time", passes))
     end
     measure("passes", passes, "1")

@@ -90,7 +90,7 @@ struct HandDescription {
   std::vector<HandGoal> goals;     ///< one after the other
   Pose start;                      ///< of a hand with goals, device coordinates
   Watched watched = Watched::handle;
-  bool repeat = false;              ///< after the last waypoint or goal on to the first, until the run ends
+  bool repeat = false;  ///< after the last waypoint or goal on to the first, until the run ends
   ArmKind arm = ArmKind::given;
   double mass = 0.15;               ///< kg, fingers and handle
   double inertia = 1e-3;            ///< kg m^2

@@ -10,19 +10,19 @@ namespace {
 
 // Fitts' law (1954), T = b log2(2 D / W). The slope is the order of magnitude of what is reported for a hand.
 constexpr double kFittsSlope = 0.1;  // s/bit
-constexpr double kShortest = 0.1;                     // s, order of magnitude of the shortest correction
-constexpr double kInterval = 0.1;                     // s, between corrections; a choice
-constexpr double kWindow = 0.1;                       // s, over which a velocity is seen
-constexpr double kPatience = 0.5;                     // s, over which progress is judged; a choice
-constexpr double kProgress = 0.05;                    // of what is missing, in that time: enough; a choice
-constexpr double kBraking = 0.2;                      // s, that a hand needs to stop what it set going; a choice
-constexpr double kArrival = 1;                        // s, in which it wants to arrive where it is carried; a choice
-constexpr double kFastEnough = 0.3;                   // of the speed that it wants then; a choice
-constexpr double kFound = 0.005;   // m deeper than when the search began: the hole is found; a choice
-constexpr double kAligned = 0.9;   // cosine; a choice
-constexpr double kMostLess = 0.5;  // of how far out it is, at once; a choice
-constexpr double kFelt = 1;        // N, against the hand: something resists; a choice
-constexpr double kInFlight = 0.1;  // of what is left of a movement: errors below that wait for its end; a choice
+constexpr double kShortest = 0.1;    // s, order of magnitude of the shortest correction
+constexpr double kInterval = 0.1;    // s, between corrections; a choice
+constexpr double kWindow = 0.1;      // s, over which a velocity is seen
+constexpr double kPatience = 0.5;    // s, over which progress is judged; a choice
+constexpr double kProgress = 0.05;   // of what is missing, in that time: enough; a choice
+constexpr double kBraking = 0.2;     // s, that a hand needs to stop what it set going; a choice
+constexpr double kArrival = 1;       // s, in which it wants to arrive where it is carried; a choice
+constexpr double kFastEnough = 0.3;  // of the speed that it wants then; a choice
+constexpr double kFound = 0.005;     // m deeper than when the search began: the hole is found; a choice
+constexpr double kAligned = 0.9;     // cosine; a choice
+constexpr double kMostLess = 0.5;    // of how far out it is, at once; a choice
+constexpr double kFelt = 1;          // N, against the hand: something resists; a choice
+constexpr double kInFlight = 0.1;    // of what is left of a movement: errors below that wait for its end; a choice
 
 Quaterniond turned(const Vector3d& by, const Quaterniond& q) {
   return (rotation_from_vector(by) * q).normalized();
@@ -230,6 +230,13 @@ void GoalSeeker::stop() {
   move_aim(place_.place(t_) + kInterval / 2 * place_.velocity(t_), kInterval);
 }
 
+/// Met something on its way: keeps touch with it, no more. If that does not do it pushes, later.
+void GoalSeeker::touch(const Vector3d& direction) {
+  const Vector3d now = place_.place(t_);
+  const double lead = (now - views_.before(0).own.position).dot(direction);
+  move_aim(now + std::min(0.0, kFelt / hand_.stiffness - lead) * direction, kInterval);
+}
+
 /// Further towards `direction` (unit, device coordinates), by as much as the force may grow between two decisions.
 void GoalSeeker::push(const Vector3d& direction) {
   Vector3d end = place_.end() + hand_.push * kInterval / hand_.stiffness * direction;
@@ -278,7 +285,7 @@ void GoalSeeker::correct_place(const View& view) {
   const bool is_at_edge = (place_.end() - hand_.start.position).norm() >= edge_ * (1 - 1e-9);
   if (predicted.dot(direction) > 0 &&
       (is_resisted || (is_at_edge && (place_.end() - hand_.start.position).dot(outward) > 0))) {
-    if (is_resisted && left > kInterval) return stop();
+    if (is_resisted && left > kInterval) return touch(outward);
     if (left <= kInterval && length > leg_.tolerance && !progresses(lacks)) push(outward);
     return;
   }

@@ -77,6 +77,7 @@ class GoalSeeker {
   [[nodiscard]] double movement_time(double distance, double tolerance) const;
   void move_aim(const Vector3d& end, double T);
   void stop();
+  void touch(const Vector3d& direction);
   void push(const Vector3d& direction);
   [[nodiscard]] Vector3d draw();
   [[nodiscard]] const HandGoal& wanted() const { return hand_.goals[goal_]; }

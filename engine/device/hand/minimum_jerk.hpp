@@ -3,8 +3,8 @@
 //
 // One that is corrected on its way goes on from the place, velocity and acceleration that it has, so that nothing
 // jumps. Where the correction takes much longer than what is left, what is left runs out as it would have, and the
-// correction is added to it (superposition: Henis & Flash 1991, NIPS 4); stretched over the longer time the old motion would
-// swing far out.
+// correction is added to it (superposition: Henis & Flash 1991, NIPS 4); stretched over the longer time the old motion
+// would swing far out.
 #pragma once
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 //              stiffness and damping of a pinch grow with its force); the factor of two is an order of magnitude.
 //
 //   tremor of a drawn person: 0.05 to 0.25 mm rms, log-uniform, if none is given: from eye surgeons who hold an
-//   instrument still (49 um rms, Riviere, Rader & Khosla 1997) to a braced instrument without sight of it (254 um rms in
-//   the worst axis of a typical subject, PMC3032442, figure 4).
+//   instrument still (49 um rms, Riviere, Rader & Khosla 1997) to a braced instrument without sight of it (254 um rms
+//   in the worst axis of a typical subject, PMC3032442, figure 4).
 #pragma once
 
 #include "engine/device/hand.hpp"
