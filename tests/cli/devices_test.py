@@ -1,4 +1,5 @@
 """A device that nobody holds, a trace that is made for it, and what its bubble does with it: `scenarios/reach.lua`."""
+import json
 import os
 import unittest
 
@@ -53,6 +54,26 @@ class Devices(ProgramTest):
         force = numpy.linalg.norm(device["wrench"][:, :3], axis=1)
         self.assertLessEqual(force.max(), 3.3 * (1 + 1e-12))
         self.assertEqual((device["saturated"] == 1).tolist(), (force > 3.3 * (1 - 1e-12)).tolist())
+
+    def test_the_way_back_is_what_the_poses_tell(self):
+        for law, device in (("cubic", "virtuose"), ("peak-ring", "omni"), ("quadratic", "omni")):
+            with self.subTest(law=law, device=device):
+                done = self.succeed("run", os.path.join(SOURCE, "scenarios", "bubble_stickiness.lua"), "--json", "--quiet", "-o",
+                                    "stick.h5", "--force", "--set", "law=" + law, "--set", "device=" + device,
+                                    "--set", "surprise=0.5", "--seed", "2")
+                report = json.loads(done.stdout)
+                self.assertEqual(report["outcome"], "released")
+                with h5py.File(self.path("stick.h5")) as f:
+                    raw = f[f"state/device/{device}/raw_pose"][:, 0]
+                    center = f[f"state/device/{device}/bubble_center"][:, 0]
+                    box = f["state/body/box/pose"][:, 0]
+                touching = numpy.flatnonzero(box > 3 - 0.1 - 1e-7)  # the wall stands at 3 m, the box has sides of 0.2 m
+                first, last = touching[0], touching[-1]
+                self.assertAlmostEqual(report["measures"]["way back"]["value"], raw[first:].max() - raw[last], delta=2e-4)
+                scale = 3.2 if device == "virtuose" else 10
+                self.assertAlmostEqual(report["measures"]["bubble moved"]["value"], (center[last] - center[first]) / scale,
+                                       delta=2e-3)
+                self.assertAlmostEqual(report["measures"]["time to the wall"]["value"], first / 1000, delta=0.01)
 
     def test_a_bubble_that_stops_in_collision_goes_no_farther(self):
         ends = [self.run_reach(*self.hold(), "--set", "stop=" + stop)[0]["bubble_center"][:, 0].max() for stop in ("false", "true")]

@@ -7,13 +7,14 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from xml.etree import ElementTree
 
 import h5py
 
 from program import ProgramTest, VERISIM
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-IDS = ["R1", "R2", "R3", "R4", "R5", "R6", "R7", "R9"]
+IDS = ["R1", "R2", "R3", "R4", "R5", "R6", "R7", "R9", "R10"]
 
 
 def processor_seconds():
@@ -79,6 +80,34 @@ class Reproduce(ProgramTest):
         for row in self.rows("R6"):
             self.assertAlmostEqual(row["ratio"], 1, delta=0.01, msg=row["what"])
         self.assertIn("0.304 m/s", self.rows("R6")[0]["why"])
+
+    def test_r6_figure_4_6_is_drawn_with_a_curve_for_each_law(self):
+        (figure,) = [file for file in self.files("R6") if file.endswith(".svg")]
+        picture = ElementTree.parse(self.path(figure)).getroot()
+        curves = [e.get("d") for e in picture.iter("{http://www.w3.org/2000/svg}path") if e.get("d").count("L") > 100]
+        self.assertEqual(len(curves), 3)
+        with open(self.path(self.files("R6")[0])) as table:
+            rows = list(csv.DictReader(table))
+        for curve, law in zip(curves, ("quadratic", "peak_ring", "peak_ring_as_printed")):
+            y = [float(point.split()[1]) for point in curve[1:].split("L")]
+            rates = [float(row[law]) for row in rows]
+            scale = (y[0] - y[-1]) / (rates[-1] - rates[0])  # px a m/s: y is down
+            self.assertLess(max(abs(y[0] - at - scale * rate) for at, rate in zip(y, rates)), 0.5, law)
+
+    def test_r10_is_of_the_table_beside_it(self):
+        with open(self.path([file for file in self.files("R10") if file.endswith("stickiness.csv")][0])) as table:
+            rows = [row for row in csv.DictReader(table) if row["outcome"] == "released"]
+        for law in ("cubic", "quadratic", "peak-ring"):
+            back = [float(row["way_back_m"]) for row in rows if row["law"] == law]
+            moved = [float(row["bubble_moved_m"]) for row in rows if row["law"] == law]
+            here = {row["what"]: row["here"] for row in self.rows("R10")}
+            self.assertAlmostEqual(here[f"way back, {law}"], sum(back) / len(back), places=12)
+            self.assertAlmostEqual(here[f"way back over way of the bubble, {law}"], sum(back) / sum(moved), places=12)
+            # What the dissertation observed.
+            self.assertAlmostEqual(sum(back) / sum(moved), 1, delta=0.25)
+        for file in self.files("R10"):
+            if file.endswith(".svg"):
+                ElementTree.parse(self.path(file))
 
     def test_r1_counts_overruns_beside_those_of_an_empty_loop(self):
         share = self.rows("R1")[2]

@@ -50,6 +50,28 @@ TEST(Bubbles, MoveWhatTheirDeviceHolds) {
   EXPECT_NEAR(written.scene.devices[0]->reading().handle.position.x(), 0.3 + 0.5, 1e-12);
 }
 
+// What a device records a script reads: the same numbers as the run file's.
+TEST(Devices, TellAScriptWhatTheyRecord) {
+  WrittenScenario written(R"(
+    local dev = BubbleTechnique{ radius = 0.1, law = "linear", bubbleVelocityScale = 5, deviceCenter = {0, 0, 0},
+      device = Devices.Ideal{ operator = Devices.Hand{ path = {{0.2, 0, 0}} } } }
+    addDevice(dev)
+    assert(not pcall(function() return dev:recorded("outside") end))
+    defineSimulationParameters{ frameRate = 1000 }
+    Actions.addFrameAction(function()
+      Actions.waitSeconds(0.3)
+      local center, moved = dev:recorded("bubble_center"), dev.handle.position - dev.raw.position
+      assert(#center == 3 and math.abs(center[1] - moved[1]) < 1e-12 and center[1] > 0.1)
+      assert(dev:recorded("outside") == 1 and dev:recorded("saturated") == 0)
+      assert(#dev:recorded("bubble_velocity") == 3)
+      local fine, text = pcall(function() return dev:recorded("bubble") end)
+      assert(not fine and text:find("records no 'bubble'"))
+      outcome("read")
+    end))");
+  (void)written.run(400);
+  EXPECT_EQ(written.scenario->outcome(), "read");
+}
+
 TEST(Navigation, IsPausedByAScript) {
   WrittenScenario written(R"(
     local nav = Navigation()
