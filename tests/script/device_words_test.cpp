@@ -136,6 +136,77 @@ TEST(Hand, RefusesAPathThatIsNone) {
             std::string::npos);
 }
 
+// A goal's place is the virtual world's: behind a scale of 4 the hand goes a quarter of the way. What holds a body is
+// told where it is: the box was grasped 0.1 m beside the handle.
+TEST(Goals, AreSoughtInTheVirtualWorldByHandleOrBody) {
+  for (const bool body : {false, true}) {
+    WrittenScenario written(std::string(R"(
+      defineSimulationParameters{ maxStiffness = 1000 }
+      local box = addObject{ name = "box", voxelsize = 0.02, position = {0, 0.1, 0}, Solid.box{0.1, 0.1, 0.1} }
+      hand = Devices.Ideal{ name = "it", scale = 4, operator = Devices.Hand{ goal = "reach", to = {0.2, 0.1, 0}, watch = ")") +
+                            (body ? "body" : "handle") + R"(" } }
+      addDevice(hand)
+      grasp(hand, box))");
+    written.options.duration = 2;
+    written.run(2000);
+    const Vector3d& handle = written.scene.devices[0]->reading().handle.position;
+    EXPECT_LE((handle - Vector3d(0.2, body ? 0 : 0.1, 0)).norm(), 0.0055);
+    const std::vector<std::string> said = written.events("goal");
+    ASSERT_EQ(said.size(), 2u);
+    EXPECT_EQ(said[0], "it begins to reach");
+    EXPECT_EQ(said[1], "it has reached its goal");
+  }
+}
+
+TEST(Goals, OfTwoHandsAreRecordedUnderTheirDevices) {
+  WrittenScenario written(R"(
+    for _, name in ipairs{ "left", "right" } do
+      addDevice(Devices.Ideal{ name = name, operator = Devices.Hand{ name = name .. " hand", arm = "drawn", goals = {
+        { goal = "insert", from = {0, 0, 0.1}, to = {0, 0, 0}, strategy = "spiral", pitch = 0.001 },
+        { goal = "wander", box = { min = {0, 0, 0}, max = {0.1, 0.1, 0.1} }, places = 2 },
+        { goal = "touch and retreat", to = {0.1, 0, 0}, retreat = {0, 0, 0}, force = 1 },
+        { goal = "withdraw", to = {position = {0, 0, 0.1}, orientation = AngleAxis(0.1, Axis{0, 0, 1})} } } } })
+    end)");
+  written.options.duration = 0.1;
+  written.run(100);
+  EXPECT_EQ(written.scene.devices.size(), 2u);  // one name for both records would have ended the program
+}
+
+TEST(Goals, RefuseWhatIsNone) {
+  const auto refused = [](const std::string& fields, const std::string& wanted) {
+    const std::string text = refusal_of("addDevice(Devices.Hand{ " + fields + " })");
+    EXPECT_NE(text.find(wanted), std::string::npos) << fields << ": " << text;
+  };
+  refused("goal = 'reech', to = {0, 0, 0}", "did you mean 'reach'?");
+  refused("goal = 'reach'", "needs to");
+  refused("goal = 3, to = {0, 0, 0}", "goal");
+  refused("goals = {}", "list of goals");
+  refused("goals = {{to = {0, 0, 0}}}", "goals[1] needs goal");
+  refused("goals = {{goal = 'reach', to = {0, 0, 0}, toleranse = 1}}", "did you mean 'tolerance'?");
+  refused("goal = 'reach', to = {0, 0}", "to");
+  refused("goal = 'reach', to = {0, 0, 0/0}", "finite");
+  refused("goal = 'reach', to = {position = {0, 0, 0}, sped = 1}", "sped");
+  refused("goal = 'reach', to = {0, 0, 0}, path = {{0, 0, 0}}", "both a path and goals");
+  refused("goal = 'reach', to = {0, 0, 0}, goals = {{goal = 'reach', to = {0, 0, 0}}}", "both goal and goals");
+  refused("goal = 'insert', to = {0, 0, 0}, strategy = 'spirale'", "did you mean 'spiral'?");
+  refused("goal = 'wander'", "needs box");
+  refused("goal = 'wander', box = {min = {0, 0, 0}}", "needs min and max");
+  refused("goal = 'wander', box = {min = {1, 0, 0}, max = {0, 0, 0}}", "box ends before it begins");
+  refused("goal = 'wander', box = {min = {0, 0, 0}, max = {0, 0, 0}}, places = -1", "must not be negative");
+  refused("goal = 'touch and retreat', to = {0, 0, 0}", "needs retreat");
+  refused("goal = 'reach', to = {0, 0, 0}, watch = 'eye'", "handle");
+  refused("goal = 'reach', to = {0, 0, 0}, arm = 'published'", "measured");
+  refused("goal = 'reach', to = {0, 0, 0}, arm = 'drawn', mass = 1", "leave one of them out");
+  for (const char* field : {"tolerance", "angularTolerance", "speed", "giveUp", "reach", "push", "greatestForce"})
+    for (const char* bad : {"0", "-1", "0/0"})
+      refused(std::string("goal = 'reach', to = {0, 0, 0}, ") + field + " = " + bad, field);
+  for (const char* field : {"pitch", "searchSpeed", "searchRadius", "tilt", "press"})
+    for (const char* bad : {"0", "-1", "0/0"})
+      refused(std::string("goal = 'insert', to = {0, 0, 0}, ") + field + " = " + bad, field);
+  for (const char* field : {"dwell", "reaction"})
+    refused(std::string("goal = 'reach', to = {0, 0, 0}, ") + field + " = -1", field);
+}
+
 TEST(Grasp, NamesTheChainThatHoldsTheDevice) {
   WrittenScenario written(R"(
     local omni = Devices.Sensable.PhantomOmni{ operator = Devices.Hand{ path = {{0, 0, 0}} } }
