@@ -13,6 +13,12 @@ using Block = BlockCholesky::Block;
 constexpr std::size_t kBits = 64;
 constexpr std::uint32_t kEliminated = static_cast<std::uint32_t>(-1);
 
+/// The numbers of all blocks, one block after the other.
+template <typename Blocks>
+auto* first_of(Blocks& blocks) {
+  return blocks.empty() ? nullptr : blocks.front().data();
+}
+
 }  // namespace
 
 void BlockCholesky::reserve(std::size_t bodies, std::size_t blocks) {
@@ -108,13 +114,13 @@ Block& BlockCholesky::off_diagonal(std::size_t a, std::size_t b) {
 }
 
 void BlockCholesky::factor() {
-  if (bodies_ > 0) factor_blocks({bodies_, begin_.data(), row_.data()}, values_.data()->data(), diagonal_.data()->data());
+  factor_blocks({bodies_, begin_.data(), row_.data()}, first_of(values_), first_of(diagonal_));
 }
 
 void BlockCholesky::solve(std::span<double> x) const {
   VERISIM_ASSERT(x.size() == 6 * bodies_);
   for (std::size_t j = 0; j < bodies_; ++j) std::copy_n(&x[6 * order_[j]], 6, &right_[6 * j]);
-  solve_blocks({bodies_, begin_.data(), row_.data()}, values_.data()->data(), diagonal_.data()->data(), right_.data());
+  solve_blocks({bodies_, begin_.data(), row_.data()}, first_of(values_), first_of(diagonal_), right_.data());
   for (std::size_t j = 0; j < bodies_; ++j) std::copy_n(&right_[6 * j], 6, &x[6 * order_[j]]);
 }
 

@@ -16,7 +16,8 @@ struct BlockPattern {
   const std::uint32_t* row;    ///< of each of these blocks, ascending in a column
 };
 
-/// Replaces a matrix by its factor, the pivots inverted. @pre it is positive definite, and the pattern that of the factor
+/// Replaces a matrix by its factor, the pivots inverted. @pre it is positive definite, and the pattern that of the
+/// factor
 /// @param values    (36) of each block below the diagonal
 /// @param diagonal  (36) of each column
 void factor_blocks(const BlockPattern& pattern, double* values, double* diagonal);

@@ -183,9 +183,7 @@ void ConvexStep::add_run(Run& run, double dt) {
   if (!acts) return;
   if (!run.has_sum) sum_stiffness(run, dt);
   const std::size_t first = at(run.body[0]);
-  const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) {
-    Eigen::Map<Matrix6d>(to.data()) += from;
-  };
+  const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) { Eigen::Map<Matrix6d>(to.data()) += from; };
   add(factor_.diagonal(first), run.of_first);
   Eigen::Map<Vector6d>(&unknowns_[6 * first]) -= b;
   if (run.body[1] == kFixed) return;

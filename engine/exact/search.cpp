@@ -66,7 +66,7 @@ class Search {
   std::array<PlacedBox, kFewLeaves> leaves_;  ///< of the mover's tree, if trees have no more; else its first nodes
   std::uint64_t is_placed_ = 0;               ///< of these nodes: a bit for each, placed when it is first met
   static_assert(kFewLeaves == 64);
-  PlacedBox whole_;                           ///< the tree's root; with the leaves
+  PlacedBox whole_;  ///< the tree's root; with the leaves
   bool are_leaves_placed_ = false;
   PlacedFeature placed_{};  ///< of the block that was tested last
 };
