@@ -3,6 +3,7 @@
 #include "engine/exact/conforming_normals.hpp"
 #include "engine/exact/edge_crossing.hpp"
 #include "engine/exact/edge_ownership.hpp"
+#include "engine/exact/near_pairs.hpp"
 #include "engine/exact/ownership_culling.hpp"
 
 namespace verisim::exact {
@@ -10,26 +11,14 @@ namespace {
 
 constexpr double kSlack = 1e-9;  // m: more than double precision says of bodies of kilometres
 
-/// A box of the mover's tree in the coordinates of the base: the box along their axes around it.
-struct PlacedBox {
-  Vector3d center, half;
-};
-
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
-      : pair_{mover, base, motion}, R_abs_(motion.R.cwiseAbs()), rows_(rows), cost_(cost) {}
+      : pair_{mover, base, motion}, near_(mover, base, motion), rows_(rows), cost_(cost) {}
 
   double run(NodePairs& stack);
 
  private:
-  template <typename Test>
-  void find_near(const BoxTree& base, NodePairs& stack, Test&& test);
-  template <typename Test>
-  void descend(const BoxTree& base, NodePairs& stack, Test&& test);
-  [[nodiscard]] PlacedBox placed_box(const BoxTree::Node& box) const;
-  void place_leaves();
-  [[nodiscard]] bool are_near(const PlacedBox& block, const BoxTree::Node& entity) const;
   [[nodiscard]] const PlacedFeature& placed_feature(const SampleBlock& block);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
@@ -58,101 +47,17 @@ class Search {
   [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
 
   const BodyPair pair_;
-  const Matrix3d R_abs_;  ///< of motion.R
+  NearPairs near_;
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
-  static constexpr std::size_t kFewLeaves = 64;
-  std::array<PlacedBox, kFewLeaves> leaves_;  ///< of the mover's tree, if trees have no more; else its first nodes
-  std::uint64_t is_placed_ = 0;               ///< of these nodes: a bit for each, placed when it is first met
-  static_assert(kFewLeaves == 64);
-  PlacedBox whole_;  ///< the tree's root; with the leaves
-  bool are_leaves_placed_ = false;
   PlacedFeature placed_{};  ///< of the block that was tested last
 };
 
 double Search::run(NodePairs& stack) {
-  find_near(pair_.base.face_tree, stack, [&](std::uint32_t block, std::uint32_t face) { test_block(block, face); });
-  find_near(pair_.base.edge_tree, stack, [&](std::uint32_t block, std::uint32_t edge) { cross_block(block, edge); });
+  near_.find(pair_.base.face_tree, stack, [&](std::uint32_t block, std::uint32_t face) { test_block(block, face); });
+  near_.find(pair_.base.edge_tree, stack, [&](std::uint32_t block, std::uint32_t edge) { cross_block(block, edge); });
   return depth_max_;
-}
-
-inline PlacedBox Search::placed_box(const BoxTree::Node& box) const {
-  return {pair_.motion.R * box.center + pair_.motion.p, R_abs_ * box.half};
-}
-
-inline bool Search::are_near(const PlacedBox& block, const BoxTree::Node& entity) const {
-  for (int i = 0; i < 3; ++i)  // most are apart along the first
-    if (std::abs(block.center[i] - entity.center[i]) > block.half[i] + entity.half[i] + pair_.motion.margin)
-      return false;
-  return true;
-}
-
-void Search::place_leaves() {
-  if (are_leaves_placed_) return;
-  const BoxTree& tree = pair_.mover.block_tree;
-  for (std::size_t i = 0; i < tree.leaves.size(); ++i) leaves_[i] = placed_box(tree.nodes[tree.leaves[i]]);
-  are_leaves_placed_ = true;
-}
-
-/// Calls test(block, entity) for all blocks of the mover that may be near an entity of the base; the order does not
-/// depend on the poses. Of small bodies all that lies near the other as a whole is compared with each other: a tree of
-/// a dozen items has twice as many nodes, and most of them are near.
-template <typename Test>
-void Search::find_near(const BoxTree& base, NodePairs& stack, Test&& test) {
-  const BoxTree& blocks = pair_.mover.block_tree;
-  if (blocks.nodes.empty() || base.nodes.empty()) return;
-  const bool are_few = std::max({blocks.leaves.size(), pair_.base.face_tree.leaves.size(),
-                                 pair_.base.edge_tree.leaves.size()}) <= kFewLeaves;
-  if (!are_few) return descend(base, stack, test);
-  if (!are_leaves_placed_) whole_ = placed_box(blocks.nodes[0]);
-  if (!are_near(whole_, base.nodes[0])) return;
-  place_leaves();
-  std::array<const BoxTree::Node*, kFewLeaves> near;
-  std::size_t count = 0;
-  for (const std::uint32_t leaf : base.leaves)
-    if (are_near(whole_, base.nodes[leaf])) near[count++] = &base.nodes[leaf];
-  for (std::size_t i = 0; i < blocks.leaves.size(); ++i) {
-    if (!are_near(leaves_[i], base.nodes[0])) continue;
-    for (std::size_t j = 0; j < count; ++j)
-      if (are_near(leaves_[i], *near[j])) test(blocks.nodes[blocks.leaves[i]].left, near[j]->left);
-  }
-}
-
-/// Likewise by descending the mover's tree of blocks and one of the base's.
-template <typename Test>
-void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) {
-  const auto& blocks = pair_.mover.block_tree.nodes;
-  const auto& entities = base.nodes;
-  stack.clear();
-  const auto place = [&](std::uint32_t node) {
-    if (node >= kFewLeaves) return placed_box(blocks[node]);
-    const std::uint64_t bit = std::uint64_t{1} << node;
-    if ((is_placed_ & bit) == 0) leaves_[node] = placed_box(blocks[node]);
-    is_placed_ |= bit;
-    return leaves_[node];
-  };
-  const auto visit = [&](std::uint32_t g, std::uint32_t s) {
-    if (are_near(place(g), entities[s])) stack.emplace_back(g, s);
-  };
-  visit(0, 0);
-  while (!stack.empty()) {
-    const auto [g, s] = stack.back();
-    stack.pop_back();
-    const BoxTree::Node& block = blocks[g];
-    const BoxTree::Node& entity = entities[s];
-    const bool block_is_leaf = block.right == BoxTree::kLeaf;
-    const bool entity_is_leaf = entity.right == BoxTree::kLeaf;
-    if (block_is_leaf && entity_is_leaf) {
-      test(block.left, entity.left);
-    } else if (entity_is_leaf || (!block_is_leaf && block.half.squaredNorm() > entity.half.squaredNorm())) {
-      visit(block.right, s);
-      visit(block.left, s);
-    } else {
-      visit(g, entity.right);
-      visit(g, entity.left);
-    }
-  }
 }
 
 /// The feature of a block in the coordinates of the base. Blocks are tested one after the other, each against several
