@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
-#include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/exact/block_kernels.hpp"
 
 namespace verisim::exact {
 namespace {
@@ -14,53 +13,10 @@ using Block = BlockCholesky::Block;
 constexpr std::size_t kBits = 64;
 constexpr std::uint32_t kEliminated = static_cast<std::uint32_t>(-1);
 
-/// A = L L^T in place of the lower triangle; the diagonal of L is inverted.
-void factor_diagonal(Block& A) {
-  for (std::size_t j = 0; j < 6; ++j) {
-    double pivot = A[6 * j + j];
-    for (std::size_t k = 0; k < j; ++k) pivot -= A[6 * k + j] * A[6 * k + j];
-    const double inverse = 1 / std::sqrt(pivot);
-    for (std::size_t i = j + 1; i < 6; ++i) {
-      double sum = A[6 * j + i];
-      for (std::size_t k = 0; k < j; ++k) sum -= A[6 * k + i] * A[6 * k + j];
-      A[6 * j + i] = sum * inverse;
-    }
-    A[6 * j + j] = inverse;
-  }
-}
-
-/// B L^-T in place of B.
-void divide(Block& B, const Block& L) {
-  for (std::size_t j = 0; j < 6; ++j) {
-    double* column = &B[6 * j];
-    for (std::size_t k = 0; k < j; ++k)
-      for (std::size_t i = 0; i < 6; ++i) column[i] -= L[6 * k + j] * B[6 * k + i];
-    for (std::size_t i = 0; i < 6; ++i) column[i] *= L[6 * j + j];
-  }
-}
-
-/// C - A B^T in place of C. Two columns at once, so that what is summed stays in registers.
-void subtract_product(Block& C, const Block& A, const Block& B) {
-  for (std::size_t j = 0; j < 6; j += 2) {
-    double first[6];
-    double second[6];
-    for (std::size_t i = 0; i < 6; ++i) {
-      first[i] = C[6 * j + i];
-      second[i] = C[6 * j + 6 + i];
-    }
-    for (std::size_t k = 0; k < 6; ++k) {
-      const double b = B[6 * k + j];
-      const double c = B[6 * k + j + 1];
-      for (std::size_t i = 0; i < 6; ++i) {
-        first[i] -= A[6 * k + i] * b;
-        second[i] -= A[6 * k + i] * c;
-      }
-    }
-    for (std::size_t i = 0; i < 6; ++i) {
-      C[6 * j + i] = first[i];
-      C[6 * j + 6 + i] = second[i];
-    }
-  }
+/// The numbers of all blocks, one block after the other.
+template <typename Blocks>
+auto* first_of(Blocks& blocks) {
+  return blocks.empty() ? nullptr : blocks.front().data();
 }
 
 }  // namespace
@@ -158,47 +114,13 @@ Block& BlockCholesky::off_diagonal(std::size_t a, std::size_t b) {
 }
 
 void BlockCholesky::factor() {
-  for (std::size_t j = 0; j < bodies_; ++j) {
-    factor_diagonal(diagonal_[j]);
-    const std::size_t end = begin_[j + 1];
-    for (std::size_t b = begin_[j]; b < end; ++b) divide(values_[b], diagonal_[j]);
-    for (std::size_t b = begin_[j]; b < end; ++b) {
-      const std::size_t column = row_[b];
-      subtract_product(diagonal_[column], values_[b], values_[b]);
-      std::size_t to = begin_[column];
-      for (std::size_t a = b + 1; a < end; ++a) {
-        while (row_[to] != row_[a]) ++to;  // the pattern of the column holds all that is left of this one's
-        subtract_product(values_[to], values_[a], values_[b]);
-      }
-    }
-  }
+  factor_blocks({bodies_, begin_.data(), row_.data()}, first_of(values_), first_of(diagonal_));
 }
 
 void BlockCholesky::solve(std::span<double> x) const {
   VERISIM_ASSERT(x.size() == 6 * bodies_);
   for (std::size_t j = 0; j < bodies_; ++j) std::copy_n(&x[6 * order_[j]], 6, &right_[6 * j]);
-  for (std::size_t j = 0; j < bodies_; ++j) {
-    const Block& L = diagonal_[j];
-    double* y = &right_[6 * j];
-    for (std::size_t c = 0; c < 6; ++c) {
-      y[c] *= L[6 * c + c];
-      for (std::size_t r = c + 1; r < 6; ++r) y[r] -= L[6 * c + r] * y[c];
-    }
-    for (std::size_t b = begin_[j]; b < begin_[j + 1]; ++b)
-      for (std::size_t c = 0; c < 6; ++c)
-        for (std::size_t r = 0; r < 6; ++r) right_[6 * row_[b] + r] -= values_[b][6 * c + r] * y[c];
-  }
-  for (std::size_t j = bodies_; j-- > 0;) {
-    const Block& L = diagonal_[j];
-    double* y = &right_[6 * j];
-    for (std::size_t b = begin_[j]; b < begin_[j + 1]; ++b)
-      for (std::size_t c = 0; c < 6; ++c)
-        for (std::size_t r = 0; r < 6; ++r) y[c] -= values_[b][6 * c + r] * right_[6 * row_[b] + r];
-    for (std::size_t c = 6; c-- > 0;) {
-      for (std::size_t r = c + 1; r < 6; ++r) y[c] -= L[6 * c + r] * y[r];
-      y[c] *= L[6 * c + c];
-    }
-  }
+  solve_blocks({bodies_, begin_.data(), row_.data()}, first_of(values_), first_of(diagonal_), right_.data());
   for (std::size_t j = 0; j < bodies_; ++j) std::copy_n(&right_[6 * j], 6, &x[6 * order_[j]]);
 }
 

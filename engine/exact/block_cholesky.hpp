@@ -3,7 +3,7 @@
 // Definite Systems", 1981 (minimum degree; the pattern of a column is what is left of its neighbours when it goes).
 //
 // The order of elimination, and with it every sum, depends on the pairs alone: of the bodies with the fewest neighbours
-// left the one with the lowest number goes first. No threads, no vector width enters the result.
+// left the one with the lowest number goes first. No threads, no vector width enters the result (block_kernels.hpp).
 //
 // Use: begin(bodies), join(…) for every pair, analyze(); then for any number of matrices of that pattern clear(),
 // diagonal(…) and off_diagonal(…) to be added to, factor(), solve(…). No allocation but in reserve().

@@ -43,6 +43,10 @@ BoxTree::BoxTree(std::span<const Bounds> items) {
     if ((items[i].min.array() <= items[i].max.array()).all()) numbers.push_back(i);
   }
   if (!numbers.empty()) Builder{items, nodes}.build(numbers);
+  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].right == kLeaf) leaves.push_back(i);
+  std::sort(leaves.begin(), leaves.end(),
+            [&](std::uint32_t i, std::uint32_t j) { return nodes[i].left < nodes[j].left; });
 }
 
 }  // namespace verisim::exact

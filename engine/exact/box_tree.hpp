@@ -16,7 +16,8 @@ struct BoxTree {
     std::uint32_t left, right;  ///< children; leaf: left = number of the item, right = kLeaf
   };
   static constexpr std::uint32_t kLeaf = 0xFFFFFFFF;
-  std::vector<Node> nodes;  ///< the root first; empty: no items
+  std::vector<Node> nodes;            ///< the root first; empty: no items
+  std::vector<std::uint32_t> leaves;  ///< numbers of the nodes that are leaves, by the number of their item
 
   BoxTree() = default;
   explicit BoxTree(std::span<const Bounds> items);

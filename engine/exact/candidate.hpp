@@ -63,12 +63,17 @@ struct BodyPair {
   [[nodiscard]] double edge_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
     return normal_cone_weight_in_mover(sample, motion.R.transpose() * normal, motion.thresholds.cone_of_edges);
   }
-  /// @param n      the normal in the mover's coordinates
-  /// @param scale  of cone_full and cone_none
-  [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n, double scale = 1) const {
-    double outside = 0;  // sine of the angle out of the normal cone
+  /// Sine of the angle by which a normal lies out of the mover's normal cone at a sample; 0 within.
+  /// @param n  the normal in the mover's coordinates, here and below
+  [[nodiscard]] double outside_normal_cone(std::uint32_t sample, const Vector3d& n) const {
+    double outside = 0;
     for (std::uint32_t i = mover.cone_begin[sample]; i < mover.cone_begin[sample + 1]; ++i)
       outside = std::max(outside, -n.dot(mover.cone_directions[i]));
+    return outside;
+  }
+  /// @param scale  of cone_full and cone_none
+  [[nodiscard]] double normal_cone_weight_in_mover(std::uint32_t sample, const Vector3d& n, double scale = 1) const {
+    const double outside = outside_normal_cone(sample, n);
     const SearchThresholds& fade = motion.thresholds;
     return std::clamp((fade.cone_none * scale - outside) / (scale * (fade.cone_none - fade.cone_full)), 0.0, 1.0);
   }

@@ -25,6 +25,7 @@ void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
   runs_.reserve(rows_max);
   grips_.reserve(rows_max);
   bodies_.reserve(bodies_max);
+  crossing_.reserve(rows_max);
   if (bodies_max <= kDenseMax) return;
   factor_.reserve(bodies_max, kBlocksPerBody * bodies_max);
   unknowns_.reserve(6 * bodies_max);
@@ -121,8 +122,27 @@ int ConvexStep::add_grip(const Grip& grip, int first, int second, double dt) {
   return static_cast<int>(grips_.size()) - 1;
 }
 
+/// Calls f(number of a row, dt times the rate of its gap) for all rows. The Jacobian of the second of two bodies is -T
+/// times that of the first (see sum_stiffness), so of all rows of a run the rate is that of one velocity.
+template <typename F>
+void ConvexStep::evaluate_rates(double dt, Vector6d Body::*velocity, F&& f) const {
+  for (const Run& run : runs_) {
+    const Body& first = bodies_[at(run.body[0])];
+    Vector6d u = first.*velocity;
+    if (run.body[1] != kFixed) {
+      const Body& second = bodies_[at(run.body[1])];
+      const Vector6d& of_second = second.*velocity;
+      const Vector3d turn = of_second.tail<3>();
+      u.head<3>() -= of_second.head<3>() + turn.cross(first.p_WC - second.p_WC);
+      u.tail<3>() -= turn;
+    }
+    u *= dt;
+    for (std::size_t r = run.begin; r < run.end; ++r) f(r, rows_[r].J[0].dot(u));
+  }
+}
+
 void ConvexStep::evaluate_gaps(double dt) {
-  for (Row& row : rows_) row.z = row.g + dt * rate(row, &Body::u);
+  evaluate_rates(dt, &Body::u, [&](std::size_t r, double dz) { rows_[r].z = rows_[r].g + dz; });
 }
 
 double ConvexStep::cost() const {
@@ -151,44 +171,56 @@ void ConvexStep::choose_start(double dt) {
   if (!starts_free) evaluate_gaps(dt);
 }
 
-/// The derivatives of all gaps and of the first term of the cost along the search direction.
+/// The derivatives of all gaps along the search direction. Between t = 0 and 1 most rows act all along or nowhere: with
+/// the first term of the cost these are one parabola. What is left are few.
 void ConvexStep::prepare_line_search(double dt) {
-  inertia_cost_ = inertia_slope_ = inertia_curvature_ = 0;
+  LineValue sum{};
   for (const Body& body : bodies_) {
     const Vector6d off = body.u - body.u0;
     const Vector6d push = body.M * body.direction;
-    inertia_cost_ += 0.5 * off.dot(body.M * off);
-    inertia_slope_ += off.dot(push);
-    inertia_curvature_ += body.direction.dot(push);
+    sum.cost += off.dot(body.M * off);
+    sum.slope += off.dot(push);
+    sum.curvature += body.direction.dot(push);
   }
-  for (Row& row : rows_) row.dz = dt * rate(row, &Body::direction);
+  crossing_.clear();
+  evaluate_rates(dt, &Body::direction, [&](std::size_t r, double dz) {
+    Row& row = rows_[r];
+    row.dz = dz;
+    const bool acts = row.acts();
+    if (!row.both && acts != (row.z + dz < 0)) {
+      crossing_.push_back(static_cast<std::uint32_t>(r));
+    } else if (acts) {
+      const double force = row.k * row.z;
+      sum.cost += force * row.z;
+      sum.slope += force * dz;
+      sum.curvature += row.k * dz * dz;
+    }
+  });
+  sum.cost *= 0.5;
+  line_begin_ = sum;
 }
 
+/// @param t  from 0 to 1
 ConvexStep::LineValue ConvexStep::value_along(double t) const {
-  LineValue sum{inertia_cost_ + t * (inertia_slope_ + 0.5 * t * inertia_curvature_),
-                inertia_slope_ + t * inertia_curvature_, inertia_curvature_};
-  for (const Row& row : rows_) {
-    const double pressed = row.pressed(row.z + t * row.dz);
-    if (pressed == 0) continue;
-    sum.cost += 0.5 * row.k * pressed * pressed;
-    sum.slope += row.k * pressed * row.dz;
+  const LineValue& begin = line_begin_;
+  LineValue sum{begin.cost + t * (begin.slope + 0.5 * t * begin.curvature), begin.slope + t * begin.curvature,
+                begin.curvature};
+  for (const std::uint32_t r : crossing_) {
+    const Row& row = rows_[r];
+    const double gap = row.z + t * row.dz;
+    if (!(gap < 0)) continue;
+    sum.cost += 0.5 * row.k * gap * gap;
+    sum.slope += row.k * gap * row.dz;
     sum.curvature += row.k * row.dz * row.dz;
   }
   return sum;
 }
 
-/// True if the Newton decrement is below the rounding of the cost.
-bool ConvexStep::has_converged() const {
-  const LineValue begin = value_along(0);
-  return -begin.slope <= kRoundingOfCost * begin.cost;
-}
-
 /// Line search: 1 if the full step lowers the cost enough (Armijo), else the exact minimum. It is found to the last
 /// digits: a step that ends just before the next row begins to act would meet that row again in the next direction.
-double ConvexStep::step_length() const {
+double ConvexStep::step_length(const LineValue& begin) const {
   constexpr double kEnough = 1e-4;  // of the slope at the start: Armijo's usual constant
   constexpr double kFlat = 1e-10;   // of the slope at the start
-  const LineValue begin = value_along(0);
   LineValue here = value_along(1);
   if (here.cost <= begin.cost + kEnough * begin.slope) return 1;
   double low = 0;
@@ -225,12 +257,14 @@ int ConvexStep::minimize(double dt) {
                                            : find_direction_dense(dt);
     if (!moves) return i;
     prepare_line_search(dt);
-    if (has_converged()) {
+    const LineValue begin = value_along(0);
+    // Is the Newton decrement below the rounding of the cost?
+    if (-begin.slope <= kRoundingOfCost * begin.cost) {
       // What is lost in the cost's rounding is not in a stiff row's force: 1e-12 m/s is 1e-6 N at 1e9 N/m.
       advance(1);
       return i;
     }
-    const double t = step_length();
+    const double t = step_length(begin);
     const bool same = advance(t);
     // With the same rows acting the cost is one parabola, and a full Newton step ends at its minimum.
     if (same && t == 1) return i + 1;

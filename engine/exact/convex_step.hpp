@@ -197,6 +197,8 @@ class ConvexStep {
   [[nodiscard]] double rate(const Row& row, Vector6d Body::*velocity) const;
   void choose_start(double dt);
   void evaluate_gaps(double dt);
+  template <typename F>
+  void evaluate_rates(double dt, Vector6d Body::*velocity, F&& f) const;
   [[nodiscard]] double cost() const;
   bool find_direction_of_one(double dt);
   bool find_direction_dense(double dt);
@@ -207,8 +209,7 @@ class ConvexStep {
   void sum_stiffness(Run& run, double dt);
   void prepare_line_search(double dt);
   [[nodiscard]] LineValue value_along(double t) const;
-  [[nodiscard]] bool has_converged() const;
-  [[nodiscard]] double step_length() const;
+  [[nodiscard]] double step_length(const LineValue& begin) const;
   bool advance(double t);
 
   std::vector<Row> rows_;
@@ -221,7 +222,9 @@ class ConvexStep {
   std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
   bool finished_ = true, hit_ = false, late_ = false;
-  double inertia_cost_ = 0, inertia_slope_ = 0, inertia_curvature_ = 0;  ///< of the first term along the direction
+  LineValue line_begin_{};  ///< of all that is one parabola along the direction, for t from 0 to 1, at t = 0
+  /// The others: rows that begin or cease to act somewhere between. Their numbers.
+  std::vector<std::uint32_t> crossing_;
 };
 
 }  // namespace verisim::exact

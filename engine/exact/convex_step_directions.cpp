@@ -169,7 +169,7 @@ void ConvexStep::sum_stiffness(Run& run, double dt) {
 /// Adds the rows of two bodies to the sparse system. Their stiffness is summed again only if others act than the last
 /// time: towards the minimum few pairs change.
 void ConvexStep::add_run(Run& run, double dt) {
-  double b[6] = {};
+  Vector6d b = Vector6d::Zero();
   bool acts = false;
   for (std::size_t r = run.begin; r < run.end; ++r) {
     Row& row = rows_[r];
@@ -178,36 +178,27 @@ void ConvexStep::add_run(Run& run, double dt) {
     row.summed = row_acts;
     if (!row_acts) continue;
     acts = true;
-    const double* J = row.J[0].data();
-    const double force = dt * row.k * row.z;
-    for (int i = 0; i < 6; ++i) b[i] += force * J[i];
+    b += dt * row.k * row.z * row.J[0];
   }
   if (!acts) return;
   if (!run.has_sum) sum_stiffness(run, dt);
   const std::size_t first = at(run.body[0]);
-  const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) {
-    for (std::size_t i = 0; i < 36; ++i) to[i] += from.data()[i];
-  };
+  const auto add = [](BlockCholesky::Block& to, const Matrix6d& from) { Eigen::Map<Matrix6d>(to.data()) += from; };
   add(factor_.diagonal(first), run.of_first);
-  for (std::size_t i = 0; i < 6; ++i) unknowns_[6 * first + i] -= b[i];
+  Eigen::Map<Vector6d>(&unknowns_[6 * first]) -= b;
   if (run.body[1] == kFixed) return;
 
   const std::size_t second = at(run.body[1]);
   const Vector3d d = bodies_[first].p_WC - bodies_[second].p_WC;
   add(factor_.diagonal(second), run.of_second);
-  const Vector3d push(b[0], b[1], b[2]);
-  const Vector3d turn = Vector3d(b[3], b[4], b[5]) + d.cross(push);
-  for (std::size_t i = 0; i < 3; ++i) {
-    unknowns_[6 * second + i] += push[static_cast<int>(i)];
-    unknowns_[6 * second + 3 + i] += turn[static_cast<int>(i)];
-  }
+  b.tail<3>() += d.cross(b.head<3>());
+  Eigen::Map<Vector6d>(&unknowns_[6 * second]) += b;
   if (!coupled_) return;
   BlockCholesky::Block& between = factor_.off_diagonal(first, second);
   if (factor_.is_later(second, first)) {
-    for (std::size_t i = 0; i < 36; ++i) between[i] -= run.across.data()[i];
+    Eigen::Map<Matrix6d>(between.data()) -= run.across;
   } else {
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t j = 0; j < 6; ++j) between[6 * i + j] -= run.across.data()[6 * j + i];
+    Eigen::Map<Matrix6d>(between.data()) -= run.across.transpose();
   }
 }
 

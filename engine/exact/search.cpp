@@ -3,6 +3,7 @@
 #include "engine/exact/conforming_normals.hpp"
 #include "engine/exact/edge_crossing.hpp"
 #include "engine/exact/edge_ownership.hpp"
+#include "engine/exact/near_pairs.hpp"
 #include "engine/exact/ownership_culling.hpp"
 
 namespace verisim::exact {
@@ -10,22 +11,15 @@ namespace {
 
 constexpr double kSlack = 1e-9;  // m: more than double precision says of bodies of kilometres
 
-/// A box of the mover's tree in the coordinates of the base: the box along their axes around it.
-struct PlacedBox {
-  Vector3d center, half;
-};
-
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
-      : pair_{mover, base, motion}, R_abs_(motion.R.cwiseAbs()), rows_(rows), cost_(cost) {}
+      : pair_{mover, base, motion}, near_(mover, base, motion), rows_(rows), cost_(cost) {}
 
   double run(NodePairs& stack);
 
  private:
-  template <typename Test>
-  void descend(const BoxTree& base, NodePairs& stack, Test&& test);
-  [[nodiscard]] const PlacedBox& placed_box(std::uint32_t node);
+  [[nodiscard]] const PlacedFeature& placed_feature(const SampleBlock& block);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
@@ -53,68 +47,27 @@ class Search {
   [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
 
   const BodyPair pair_;
-  const Matrix3d R_abs_;  ///< of motion.R
+  NearPairs near_;
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
-  // Those of the first nodes of the mover's tree, each placed when it is first met: for small bodies all.
-  static constexpr std::uint32_t kPlacedMax = 64;
-  std::uint64_t is_placed_ = 0;  ///< a bit per node
-  std::array<PlacedBox, kPlacedMax> placed_;
-  PlacedBox last_placed_;  ///< of a node beyond these
+  PlacedFeature placed_{};  ///< of the block that was tested last
 };
 
 double Search::run(NodePairs& stack) {
-  descend(pair_.base.face_tree, stack, [&](std::uint32_t block, std::uint32_t face) { test_block(block, face); });
-  descend(pair_.base.edge_tree, stack, [&](std::uint32_t block, std::uint32_t edge) { cross_block(block, edge); });
+  near_.find(pair_.base.face_tree, stack, [&](std::uint32_t block, std::uint32_t face) { test_block(block, face); });
+  near_.find(pair_.base.edge_tree, stack, [&](std::uint32_t block, std::uint32_t edge) { cross_block(block, edge); });
   return depth_max_;
 }
 
-inline const PlacedBox& Search::placed_box(std::uint32_t node) {
-  const std::uint64_t bit = std::uint64_t{1} << node % kPlacedMax;
-  const bool is_kept = node < kPlacedMax;
-  if (is_kept && (is_placed_ & bit) != 0) return placed_[node];
-  const BoxTree::Node& box = pair_.mover.block_tree.nodes[node];
+/// The feature of a block in the coordinates of the base. Blocks are tested one after the other, each against several
+/// entities.
+inline const PlacedFeature& Search::placed_feature(const SampleBlock& block) {
+  const Feature& feature = pair_.mover.features[block.feature];
   const RelativeMotion& motion = pair_.motion;
-  PlacedBox& placed = is_kept ? placed_[node] : last_placed_;
-  placed = {motion.R * box.center + motion.p, R_abs_ * box.half};
-  if (is_kept) is_placed_ |= bit;
-  return placed;
-}
-
-/// Descends the mover's tree of blocks and one of the base's; the order of the pairs does not depend on the poses.
-template <typename Test>
-void Search::descend(const BoxTree& base, NodePairs& stack, Test&& test) {
-  const RelativeMotion& motion = pair_.motion;
-  const auto& blocks = pair_.mover.block_tree.nodes;
-  const auto& entities = base.nodes;
-  if (blocks.empty() || entities.empty()) return;
-  stack.clear();
-  const auto visit = [&](std::uint32_t g, std::uint32_t s) {
-    const PlacedBox& block = placed_box(g);
-    const BoxTree::Node& entity = entities[s];
-    for (int i = 0; i < 3; ++i)  // most are apart along the first
-      if (std::abs(block.center[i] - entity.center[i]) > block.half[i] + entity.half[i] + motion.margin) return;
-    stack.emplace_back(g, s);
-  };
-  visit(0, 0);
-  while (!stack.empty()) {
-    const auto [g, s] = stack.back();
-    stack.pop_back();
-    const BoxTree::Node& block = blocks[g];
-    const BoxTree::Node& entity = entities[s];
-    const bool block_is_leaf = block.right == BoxTree::kLeaf;
-    const bool entity_is_leaf = entity.right == BoxTree::kLeaf;
-    if (block_is_leaf && entity_is_leaf) {
-      test(block.left, entity.left);
-    } else if (entity_is_leaf || (!block_is_leaf && block.half.squaredNorm() > entity.half.squaredNorm())) {
-      visit(block.right, s);
-      visit(block.left, s);
-    } else {
-      visit(g, entity.right);
-      visit(g, entity.left);
-    }
-  }
+  if (placed_.feature != &feature)
+    placed_ = {&feature, motion.R * feature.origin + motion.p, motion.R * feature.x, motion.R * feature.y};
+  return placed_;
 }
 
 void Search::test_block(std::uint32_t r, std::uint32_t face) {
@@ -124,26 +77,44 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   const AnalyticSurface& surface = *pair_.base.faces[face].surface;
   if (feature.against_round_only && !surface.is_convex()) return;
   if (surface.kind() == SurfaceKind::plane && is_back_facing(block, surface.axis())) return;
-  const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
-                             motion.R * feature.y};
-  const CurveFromSurface curve = pair_.seen_from(surface, placed, motion.free_twist);
+  const PlacedFeature& placed = placed_feature(block);
+  // Along a straight curve the distance from a plane and its change are linear. All that is left of the curve is its
+  // slope (closest_place).
+  const bool is_straight = !placed.is_arc() && surface.kind() == SurfaceKind::plane;
+  CurveFromSurface curve;
+  if (is_straight) {
+    curve.is_arc = false;
+    curve.surface.kind = SurfaceKind::plane;
+    curve.x = {0, 0, surface.axis().dot(placed.x)};
+  } else {
+    curve = pair_.seen_from(surface, placed, motion.free_twist);
+  }
   const std::uint32_t count = block.end - block.begin;
   const double* c = &pair_.mover.sample_c[block.begin];
   BlockDistances distances;
   PerSample gaps_now;    // m, estimated
   PerSample gaps_ahead;  // m, likewise, at the end of the step without contact
   // A place as deep as this gives no row. Along a straight segment the place that is closest to a plane is the deepest.
-  const bool is_straight = !placed.is_arc() && surface.kind() == SurfaceKind::plane;
   const double deepest = is_straight ? -pair_.base.options.spacing - kSlack : -kOutOfReach;
   bool any = false;
-  pair_.measure_all(curve, block, [&](std::uint32_t i, const Measure& m) {
+  const auto note = [&](std::uint32_t i, const Measure& m) {
     const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - feature.radius_at(c[i]);
     distances.distance[i] = m.distance;
     distances.change[i] = m.change;
     gaps_now[i] = nearest;
     gaps_ahead[i] = nearest < motion.margin ? nearest + m.change : kOutOfReach;
     any = any || (nearest < motion.margin && nearest > deepest);
-  });
+  };
+  if (is_straight) {
+    const Vector3d& n = surface.axis();
+    const double distance = n.dot(placed.origin - surface.point());
+    const double change = n.dot(pair_.moved(placed.origin, motion.free_twist));
+    const double more = motion.dt * n.dot(motion.free_twist.angular.cross(placed.x));
+    for (std::uint32_t i = 0; i < count; ++i)
+      note(i, {distance + c[i] * curve.x.z(), curve.x.z(), 0, change + c[i] * more});
+  } else {
+    pair_.measure_all(curve, block, note);
+  }
   cost_.samples += count;
   if (!any) return;
   if (feature.own_face == kNoFace && count > feature.group)
@@ -163,8 +134,7 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const Feature& feature = pair_.mover.features[block.feature];
   if (feature.own_face != kNoFace || feature.half_width == 0) return;
   const ExactEdge& edge = pair_.base.edges[e];
-  const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
-                             motion.R * feature.y};
+  const PlacedFeature& placed = placed_feature(block);
   if (!may_cross_edge(pair_, placed, edge)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
@@ -408,7 +378,7 @@ double Search::touching_fraction(const PlacedFeature& placed, const Candidate& c
 bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) const {
   const Vector3d n = pair_.motion.R.transpose() * normal;
   for (std::uint32_t i = block.begin; i < block.end; ++i)
-    if (pair_.normal_cone_weight_in_mover(i, n) > 0) return false;
+    if (pair_.outside_normal_cone(i, n) < pair_.motion.thresholds.cone_none) return false;
   return true;
 }
 
@@ -420,6 +390,11 @@ double Search::curving(const PlacedFeature& placed, const Candidate& c, const An
   const Vector3d way = pair_.moved(c.p, motion.last_twist);
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
   const Vector3d turn = motion.dt * motion.last_twist.angular;
+  const auto kept = [&](double curves) {
+    return curves < -motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
+  };
+  if (!placed.is_arc() && surface.kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
+    return kept(0.5 * surface.axis().dot(turn.cross(way)));
   const auto turned = [&](const Vector3d& v) { return Vector3d(v + turn.cross(v + 0.5 * turn.cross(v))); };
   const Vector3d moved = pair_.moved(placed.origin, motion.last_twist);
   const PlacedFeature after{&feature, placed.origin + moved + 0.5 * turn.cross(moved), turned(placed.x),
@@ -436,8 +411,7 @@ double Search::curving(const PlacedFeature& placed, const Candidate& c, const An
     });
     return gap;
   };
-  const double curves = least(after) - least(placed) - c.at.normal.dot(way);
-  return curves < -motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
+  return kept(least(after) - least(placed) - c.at.normal.dot(way));
 }
 
 /// Adds the row of a candidate that touches the face's surface, not a plane beside it.

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "engine/base/random.hpp"
+#include "engine/contact/query.hpp"
 #include "tests/contact/allocations.hpp"
 #include "tests/support/tolerance.hpp"
 
@@ -95,6 +96,29 @@ TEST(BlockCholesky, SolvesAsADenseOne) {
     const Eigen::VectorXd wanted = dense.llt().solve(b);
     for (Eigen::Index i = 0; i < b.size(); ++i)
       ASSERT_NEAR(x[static_cast<std::size_t>(i)], wanted[i], tolerance(1e-11 * wanted.norm()));
+  }
+}
+
+TEST(BlockCholesky, GivesTheSameBitsOnEverySimdTarget) {
+  struct AnySimdTarget {
+    ~AnySimdTarget() { use_simd_target(""); }
+  } const restore;
+  BlockCholesky sparse;
+  sparse.reserve(120, 120 * 119 / 2);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const Pattern pattern = random_pattern(seed);
+    ASSERT_TRUE(analyze(pattern, sparse));
+    std::vector<double> wanted;
+    for (const std::string& target : simd_targets()) {
+      use_simd_target(target);
+      (void)fill(pattern, seed, sparse);
+      std::vector<double> x(6 * pattern.bodies, 1.0);
+      sparse.factor();
+      sparse.solve(x);
+      if (wanted.empty()) wanted = x;
+      EXPECT_EQ(x, wanted) << target;
+    }
   }
 }
 
