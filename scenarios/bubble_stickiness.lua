@@ -77,13 +77,12 @@ local function carry_to_the_wall()
   measure("time to the wall", simulation.time, "s")
   measure("speed", (p.distance - size / 2) / simulation.time, "m/s")
   -- What the hand feels of the box beside what it feels of the bubble, 20 ms after they met.
-  local onset = simulation.time
+  local onset, met = simulation.time, dev:recorded("bubble_center")[1]
   while simulation.time < onset + 0.02 do watch_saturation() end
   local center = dev:recorded("bubble_center")
   local outside = math.max(0, (dev.position - osg.Vec3d(center[1], center[2], center[3])):length() - p.radius)
   measure("collision over bubble force", body.force:length() / math.max(1e-9, p.stiffness * outside), "1")
   -- From where the hand was furthest to where the box comes off for good.
-  local met = center[1]
   local furthest, since, back, took, carried = -math.huge, 0, 0, 0, 0
   local free = 0
   while free < 0.2 and simulation.time < p.give_up - 0.01 do

@@ -67,13 +67,17 @@ class Devices(ProgramTest):
                     raw = f[f"state/device/{device}/raw_pose"][:, 0]
                     center = f[f"state/device/{device}/bubble_center"][:, 0]
                     box = f["state/body/box/pose"][:, 0]
-                touching = numpy.flatnonzero(box > 3 - 0.1 - 1e-7)  # the wall stands at 3 m, the box has sides of 0.2 m
+                    touching = numpy.flatnonzero(f["state/body/box/contacts"][:] > 0)
                 first, last = touching[0], touching[-1]
-                self.assertAlmostEqual(report["measures"]["way back"]["value"], raw[first:].max() - raw[last], delta=2e-4)
+                # The wall stands at 3 m, the box has sides of 0.2 m.
+                self.assertLessEqual(abs(box[first:last] - 2.9).max(), 1e-6)
+                self.assertLess(box[:first].max(), 2.9)
+                self.assertLess(box[last + 1:].max(), 2.9)
+                self.assertAlmostEqual(report["measures"]["way back"]["value"], raw[first:].max() - raw[last], delta=1e-6)
                 scale = 3.2 if device == "virtuose" else 10
                 self.assertAlmostEqual(report["measures"]["bubble moved"]["value"], (center[last] - center[first]) / scale,
-                                       delta=2e-3)
-                self.assertAlmostEqual(report["measures"]["time to the wall"]["value"], first / 1000, delta=0.01)
+                                       delta=1e-6)
+                self.assertAlmostEqual(report["measures"]["time to the wall"]["value"], (first + 1) / 1000, delta=1e-9)
 
     def test_a_bubble_that_stops_in_collision_goes_no_farther(self):
         ends = [self.run_reach(*self.hold(), "--set", "stop=" + stop)[0]["bubble_center"][:, 0].max() for stop in ("false", "true")]
