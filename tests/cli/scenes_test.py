@@ -48,6 +48,18 @@ class Scenes(ProgramTest):
         if not SANITIZED:
             self.assertLess(statistics.median(depth["restore"]), 1.1 * statistics.median(depth["off"]))
 
+    def test_a_hole_that_is_misjudged_is_found_by_those_who_search(self):
+        """20 mm beside a hole of 2 mm of clearance: 30 seeds of the whole trial are in the scenario's notes."""
+        for seed in "1" if SANITIZED else "34":
+            for strategy in ("straight", "tilt", "spiral"):
+                s = self.scene("peg_in_hole", "--set", "strategy=" + strategy, "--set", "approach=0.02", "--set", "clearance=0.002",
+                               "--set", "hybrid=exact", "--duration", "13", "--seed", seed)
+                passes = s["measures"]["passes"]["value"]
+                if strategy == "straight":
+                    self.assertEqual(passes, 0, seed)
+                else:
+                    self.assertGreaterEqual(passes, 1, (strategy, seed))
+
     def test_peg_in_hole_in_the_published_scripts_sizes(self):
         s = self.scene("peg_in_hole", "--set", "half=true", "--duration", "5")
         self.assertGreater(s["collision_frames"], 500)

@@ -184,6 +184,34 @@ TEST(StepIsQuiet, WhileADeviceGoesThroughEveryFilter) {
   EXPECT_EQ(quiet.locks, 0U);
 }
 
+// What an operator sees, plans and says, with a peg that it has to search a hole for.
+TEST(StepIsQuiet, WhileAHandSeeksItsGoals) {
+  Scene scene = scenes::pin_in_hole();
+  scene.parameters.duration = 4;
+  HandDescription hand;
+  hand.start.position = {0.002, 0, 0.1};
+  hand.arm = ArmKind::drawn;
+  hand.watched = Watched::body;
+  HandGoal insert;
+  insert.kind = GoalKind::insert;
+  insert.strategy = PegStrategy::spiral;
+  insert.from = Vector3d(0.02, 0, 0.1);
+  insert.to.position = {0.02, 0, -0.1};
+  insert.give_up = 2.5;
+  HandGoal wander;
+  wander.kind = GoalKind::wander;
+  wander.box_min = {-0.05, -0.05, 0.1};
+  wander.box_max = {0.05, 0.05, 0.15};
+  hand.goals = {insert, wander};
+  scene.devices[0] = make_hand(hand);
+  Simulation simulation(std::move(scene), {});
+  const Quiet quiet = run_counted(simulation);
+  ASSERT_GT(quiet.contacts, 0U);
+  EXPECT_GE(quiet.events, 2U) << "no goal was begun: this test would prove nothing";
+  EXPECT_EQ(quiet.allocations, 0U);
+  EXPECT_EQ(quiet.locks, 0U);
+}
+
 TEST(StepIsQuiet, WhileHeadsAreTracked) {
   Scene scene = scenes::pin_in_hole();
   for (const char* tracker : {"geometric", "scaat", "vrpn-compatible"})

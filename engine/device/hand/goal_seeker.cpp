@@ -96,6 +96,7 @@ void GoalSeeker::seek(const View& view) {
 
 // --- goals and their legs -------------------------------------------------------------------------------------------
 
+/// At most three things a frame; who does not ask for reports is not told.
 void GoalSeeker::say(Said what) {
   if (said_count_ < said_.size()) said_[said_count_++] = {what, wanted().kind};
 }
@@ -315,7 +316,10 @@ bool GoalSeeker::searches(const View& view, const Vector3d& lacks, bool is_resis
   if (!search_.searches()) {
     const bool is_stuck = is_resisted && !progresses(lacks);
     stuck_since_ = !is_stuck ? -1 : stuck_since_ < 0 ? t_ : stuck_since_;
-    if (is_stuck && t_ - stuck_since_ > hand_.patience) try_again();
+    if (is_stuck && t_ - stuck_since_ > hand_.patience) {
+      try_again();
+      return true;
+    }
     if (!is_stuck || wanted().strategy == PegStrategy::straight) return false;
     search_.begin(t_, wanted(), leg_.axis);
     lacked_ = along;
