@@ -62,8 +62,8 @@ struct HandGoal {
   /// force or place tell.
   double stall = std::numeric_limits<double>::infinity();
   double near = std::numeric_limits<double>::infinity();
-  double tolerance = 0.005;                                         ///< m: so near is there
-  double angular_tolerance = 0.05;                                  ///< rad
+  double tolerance = 0.005;                                ///< m: so near is there
+  double angular_tolerance = 0.05;                         ///< rad
   double speed = std::numeric_limits<double>::infinity();  ///< m/s in the virtual world, mean of a movement, at most
   double dwell = 0;                                        ///< s, at the goal
   double give_up = 30;                                     ///< s, after which it goes on to the next goal

@@ -35,7 +35,7 @@ struct DeviceNode {
   std::shared_ptr<DeviceNode> base;   ///< of a filter that needs a second device: a tracker of the base
   const char* records = nullptr;      ///< filters: what of theirs is recorded, and so may be in a chain once
   DeviceFactory make;
-  std::shared_ptr<Device> device;  ///< null until make_device
+  std::shared_ptr<Device> device;     ///< null until make_device
   std::unique_ptr<Columns> recorded;  ///< what the device declares; null until a script asks for it
 
   /// A filter has the name of what it wraps.
