@@ -93,6 +93,8 @@ void ConvexStep::move_rows(double dt) {
       body.u0 -= body.M.llt().solve(pushed);
     }
   }
+  for (Body& body : bodies_) body.p_WC += dt * body.during.head<3>();  // the two sides of a row differ by that
+  for (Run& run : runs_) run.has_sum = false;
 }
 
 /// Takes as much of the rebound as creates no energy. The work of the contacts is that of their impulse A (u - u0)

@@ -9,6 +9,9 @@
 namespace verisim {
 namespace {
 
+/// s: by so much the difference of two times that are written in decimals may be longer than it is meant to be.
+constexpr double kSame = 1e-9;
+
 // Three decimals, as people write times, unless that would hide the difference.
 std::string seconds(double t) {
   return std::abs(t * 1000 - std::round(t * 1000)) < 1e-6 ? fmt::format("{:.3f}", t) : fmt::format("{}", t);
@@ -69,7 +72,7 @@ void check_times(const Trace& trace, const TraceLimits& limits, const RowPlace& 
     }
     if (now == before)
       fail(ErrorKind::input, "{}: time repeats ({}); remove one of the two rows", place(row), seconds(now));
-    if (!limits.allow_gaps && now - before > limits.max_gap) {
+    if (!limits.allow_gaps && now - before > limits.max_gap + kSame) {
       fail(ErrorKind::input, "{}: a gap of {:.6g} s ({} after {}) is longer than {:g} s; fill it or allow gaps",
            place(row), now - before, seconds(now), seconds(before), limits.max_gap);
     }

@@ -16,7 +16,7 @@ constexpr double kVirtuoseScale = 1;  // and for the Virtuose
 
 /// What of a model a scene may switch off, on, or set.
 void read_hardware(Fields& fields, HardwareDescription& d) {
-  d.forces = fields.boolean("forces").value_or(true);
+  d.forces = fields.boolean("forces").value_or(d.forces);
   d.resolution = fields.not_negative("resolution", d.resolution);
   d.force_max = fields.positive("peakForce").value_or(d.force_max);
   d.torque_max = fields.not_negative("peakTorque", d.torque_max);
@@ -69,6 +69,23 @@ int touch(lua_State* L) {
 
 int ideal(lua_State* L) {
   return hardware(L, "Devices.Ideal", ideal_device("ideal"), 1, {});
+}
+
+/// What a VR system tracks in a hand: it moves things and renders nothing.
+HardwareDescription tracked(const char* name) {
+  HardwareDescription description = ideal_device(name);
+  description.model = name;
+  description.forces = false;
+  return description;
+}
+
+int wand(lua_State* L) {
+  return hardware(L, "Devices.Gadgeteer.Wand", tracked("wand"), 1, {"position"});
+}
+
+int glove(lua_State* L) {
+  return hardware(L, "Devices.Gadgeteer.Glove", tracked("glove"), 1,
+                  {"position", "options", "hardware", "reportType", "calibFile"});
 }
 
 // --- sources --------------------------------------------------------------------------------------------------------
@@ -246,6 +263,10 @@ void add_device_words(lua_State* L) {
   lua_newtable(L);
   set_function<touch, Charge::call>(L, "Touch");
   lua_setfield(L, -2, "Geomagic");
+  lua_newtable(L);
+  set_function<wand, Charge::call>(L, "Wand");
+  set_function<glove, Charge::call>(L, "Glove");
+  lua_setfield(L, -2, "Gadgeteer");
   set_function<ideal, Charge::call>(L, "Ideal");
   set_function<replay, Charge::call>(L, "Replay");
   add_hand_word(L);

@@ -138,6 +138,17 @@ TEST(Trace, SortsIfAsked) {
   EXPECT_TRUE(message.starts_with("peg.csv:9: time repeats (0.010)")) << message;
 }
 
+// 0.4 - 0.3 is more than 0.1 by its last bit.
+TEST(Trace, OfTheLongestGapsThatAreAllowedIsRead) {
+  for (const double step : {0.1, 0.05, 0.01}) {
+    std::string text = "# verisim-trace 1\n# kind: haptic\n# source: a test\nt,px,py,pz,qx,qy,qz,qw\n";
+    for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f},0,0,0,0,0,0,1\n", step * i);
+    TraceLimits limits;
+    limits.max_gap = step;
+    EXPECT_EQ(parse_trace("a.csv", text, "haptic", limits).rows(), 200U) << step;
+  }
+}
+
 TEST(Trace, RefusesGapsUnlessTheyAreAllowed) {
   const std::string gap = haptic("0,0,0,0,0,0,0,1\n0.1,0,0,0,0,0,0,1\n0.25,0,0,0,0,0,0,1\n");
   EXPECT_EQ(refusal(gap), "peg.csv:8: a gap of 0.15 s (0.250 after 0.100) is longer than 0.1 s; fill it or allow gaps");

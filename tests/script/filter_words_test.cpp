@@ -33,9 +33,9 @@ TEST(Bubbles, LoadAsPublished) {
       addDevice(nav:transformDevice(Devices.Sensable.PhantomOmni{})))"),
                {"in a bubble of 0.22 m (peak-ring law, scale 1, 150 N/m)"});
   expect_parts(described(R"(
-      addDevice(BubbleTechnique{ device = Devices.Ideal{}, radius = 1, stiffness = 100, bubbleVelocityScale = 15,
-        navigate = {1, 0, 1} }))"),
-               {"in a bubble of 1 m", "scale 15"});
+      addDevice(BubbleTechnique{ device = Devices.Gadgeteer.Wand{ position = "VJWand" }, radius = 1, stiffness = 100,
+        bubbleVelocityScale = 15, navigate = {1, 0, 1} }))"),
+               {"wand (wand, no forces), in a bubble of 1 m", "scale 15"});
 }
 
 // An Omni that holds its handle 10 mm outside of a bubble of 20 mm, x 10: V = K x = 0.5 m/s for 1 s.
