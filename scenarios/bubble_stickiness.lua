@@ -78,18 +78,26 @@ local function carry_to_the_wall()
   measure("speed", (p.distance - size / 2) / simulation.time, "m/s")
   -- What the hand feels of the box beside what it feels of the bubble, 20 ms after they met.
   local onset, met = simulation.time, dev:recorded("bubble_center")[1]
-  while simulation.time < onset + 0.02 do watch_saturation() end
+  local furthest, since = -math.huge, onset
+  local function follow()
+    local x = dev.raw.position[1]
+    if x > furthest then furthest, since = x, simulation.time end
+    return x
+  end
+  while simulation.time < onset + 0.02 do
+    follow()
+    watch_saturation()
+  end
   local center = dev:recorded("bubble_center")
   local outside = math.max(0, (dev.position - osg.Vec3d(center[1], center[2], center[3])):length() - p.radius)
   measure("collision over bubble force", body.force:length() / math.max(1e-9, p.stiffness * outside), "1")
   -- From where the hand was furthest to where the box comes off for good.
-  local furthest, since, back, took, carried = -math.huge, 0, 0, 0, 0
+  local back, took, carried = 0, 0, 0
   local free = 0
   while free < 0.2 and simulation.time < p.give_up - 0.01 do
-    local x = dev.raw.position[1]
+    local x = follow()
     if body.contacts > 0 then
       free = 0
-      if x > furthest then furthest, since = x, simulation.time end
       back, took = furthest - x, simulation.time - since
       carried = dev:recorded("bubble_center")[1] - met
     else
