@@ -90,7 +90,8 @@ local function carry_to_the_wall()
   end
   local center = dev:recorded("bubble_center")
   local outside = math.max(0, (dev.position - osg.Vec3d(center[1], center[2], center[3])):length() - p.radius)
-  measure("collision over bubble force", body.force:length() / math.max(1e-9, p.stiffness * outside), "1")
+  local collision, bubble = body.force:length(), p.stiffness * outside
+  measure("collision's share of force", collision > 0 and collision / (collision + bubble) or 0, "1")
   -- From where the hand was furthest to where the box comes off for good.
   local back, took, carried = 0, 0, 0
   local free = 0

@@ -73,7 +73,7 @@ std::string interval_chart(const std::string& x_label, const std::vector<std::st
   }
   const double low = std::floor(pinned::log(std::min(least, most)) / pinned::log(10.0));
   const double high = std::max(low + 1, std::ceil(pinned::log(std::max(most, 1e-12)) / pinned::log(10.0)));
-  constexpr double kNames = 230;
+  constexpr double kNames = 300;  // px
   const double lane = 8, band = lane * static_cast<double>(series.size() + 1);
   const double bottom = kTop + band * static_cast<double>(rows.size());
   const auto x_of = [&](double value) {

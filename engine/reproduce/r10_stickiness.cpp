@@ -26,9 +26,9 @@ struct Condition {
 constexpr std::array kLaws = {"cubic", "quadratic", "linear", "peak-ring"};
 /// A surprised operator believes the wall half a metre further, and turns when the box has stood for half a second.
 constexpr std::array kOperators = {"sees the wall", "is surprised"};
-constexpr std::array kFacts = {"way back", "time back", "bubble moved", "speed", "collision over bubble force",
+constexpr std::array kFacts = {"way back", "time back", "bubble moved", "speed", "collision's share of force",
                                "saturated"};
-enum Fact { way_back, time_back, bubble_moved, speed, force_ratio, saturated };
+enum Fact { way_back, time_back, bubble_moved, speed, force_share, saturated };
 
 using Facts = std::array<double, kFacts.size()>;
 /// By operator; none: it did not come to the wall, or not off it.
@@ -169,8 +169,8 @@ std::vector<Row> r10_stickiness(const Workshop& workshop) {
   const std::vector<Condition> all = conditions(workshop.quick);
   std::vector<Outcome> outcomes;
   std::string csv = "law,device,operator,cure,stiffness_N_per_m,seed,outcome";
-  for (const char* fact : {"way_back_m", "time_back_s", "bubble_moved_m", "speed_m_per_s",
-                           "collision_over_bubble_force", "saturated_share", "state_hash"})
+  for (const char* fact : {"way_back_m", "time_back_s", "bubble_moved_m", "speed_m_per_s", "collision_share_of_force",
+                           "saturated_share", "state_hash"})
     csv += fmt::format(",{}", fact);
   csv += "\n";
   for (const Condition& c : all) outcomes.push_back(run_all(workshop, c, seeds, file, csv));
@@ -180,7 +180,7 @@ std::vector<Row> r10_stickiness(const Workshop& workshop) {
        {std::tuple{way_back, "way_back", "way of the hand to release [m]"},
         std::tuple{time_back, "time_back", "time to release [s]"},
         std::tuple{speed, "speed", "mean speed to the wall [m/s]"},
-        std::tuple{force_ratio, "force_ratio", "collision force over bubble force"}}) {
+        std::tuple{force_share, "force_share", "collision's share of force at onset, beside the bubble's"}}) {
     files.push_back(workshop.file(fmt::format("r10_{}.svg", name)));
     write_text(files.back(), figure_of(all, outcomes, fact, label), workshop.force);
   }
@@ -207,7 +207,7 @@ std::vector<Row> r10_stickiness(const Workshop& workshop) {
     for (const auto& [fact, what, unit] :
          {std::tuple{way_back, "way back", "m"}, std::tuple{time_back, "time back", "s"},
           std::tuple{speed, "mean speed to the wall", "m/s"}, std::tuple{saturated, "share of frames saturated", ""},
-          std::tuple{force_ratio, "collision force over bubble force at onset", ""}}) {
+          std::tuple{force_share, "collision's share of force at onset", ""}}) {
       rows.push_back(row_of(
           fmt::format("{}, {}", what, law), unit, "anecdotally", back.size(), outcome.size(),
           [&, f = fact] { return mean(outcome, f); }, files));
