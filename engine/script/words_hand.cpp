@@ -104,7 +104,10 @@ HandGoal read_goal(lua_State* L, Fields& fields, const std::string& what) {
   goal.kind = kind_of(L, fields, "goal", kGoalNames, goal.kind);
   if (goal.kind == GoalKind::wander) {
     read_box(L, fields, goal);
-    goal.places = static_cast<std::uint32_t>(std::min(1e9, std::floor(fields.not_negative("places", 0))));
+    const double places = fields.not_negative("places", 0);
+    if (places != std::floor(places) || places > 1e9)
+      raise(L, "{} is {:g} but must be a whole number up to 1e9; 0: no end", fields.name_of("places"), places);
+    goal.places = static_cast<std::uint32_t>(places);
   } else {
     if (!fields.push("to")) raise(L, "{} needs to: the place, {{x, y, z}} or {{ position =, orientation = }}", what);
     goal.turns = place_at(L, lua_gettop(L), fields.name_of("to"), goal.to);

@@ -108,10 +108,10 @@ class TableTest(RunFileTest):
                 overlap = ruler.overlap_of_prism_and_hole(pose, n, c, "cone")
                 inside = pose[:, 2] < 0.043
                 self.assertTrue(inside[-1], "it goes in")
-                # Wanted: 0.02 c, and twice the pin's force. At 5 um it is a rounding of contacts.
-                self.assertLessEqual(overlap[inside].max(), max(0.02 * c, 3e-7))
+                # Wanted: 0.02 c, and twice the pin's force. At 5 um nine sides have 0.0201 c, six 2.12 times the force.
+                self.assertLessEqual(overlap[inside].max(), (0.0205 if c == 5e-6 else 0.02) * c)
                 self.assertLessEqual(overlap.max(), 1e-6)
-                self.assertLessEqual(self.largest_force(recorded), (2.2 if c == 5e-6 else 2) * of_pin)
+                self.assertLessEqual(self.largest_force(recorded), (2.15 if c == 5e-6 else 2) * of_pin)
 
 
 @with_models

@@ -193,6 +193,8 @@ TEST(Goals, RefuseWhatIsNone) {
   refused("goal = 'wander', box = {min = {0, 0, 0}}", "needs min and max");
   refused("goal = 'wander', box = {min = {1, 0, 0}, max = {0, 0, 0}}", "box ends before it begins");
   refused("goal = 'wander', box = {min = {0, 0, 0}, max = {0, 0, 0}}, places = -1", "must not be negative");
+  refused("goal = 'wander', box = {min = {0, 0, 0}, max = {0, 0, 0}}, places = 2.5", "must be a whole number");
+  refused("goal = 'wander', box = {min = {0, 0, 0}, max = {0, 0, 0}}, places = 1e10", "must be a whole number");
   refused("goal = 'touch and retreat', to = {0, 0, 0}", "needs retreat");
   refused("goal = 'reach', to = {0, 0, 0}, watch = 'eye'", "handle");
   refused("goal = 'reach', to = {0, 0, 0}, arm = 'published'", "measured");
