@@ -12,20 +12,19 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bench/played_scenario.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/base/quantile.hpp"
 #include "engine/base/random.hpp"
 #include "engine/ruler/ruler.hpp"
-#include "engine/script/scenario.hpp"
 
 namespace verisim::bench {
 namespace {
@@ -95,38 +94,27 @@ class TrueOverlap {
   ruler::Overlap last_;
 };
 
-/// Runs the scenario once. `frame_us`: the least time of each frame so far; 0: it had no contact.
-void play(const ScenarioOptions& all, std::uint64_t every, std::vector<double>& frame_us, Figures& figures,
-          bool measures) {
-  using Clock = std::chrono::steady_clock;
-  Inputs inputs = Inputs::live(std::filesystem::path(all.path).parent_path().string(), {});
-  Scenario scenario(all, inputs);
-  Scene scene = scenario.take_scene();
-  TrueOverlap overlap(scene);
-  Simulation simulation(std::move(scene), {});
-  scenario.attach(simulation);
-  frame_us.resize(simulation.frames_planned());
-  while (simulation.frame() < simulation.frames_planned()) {
-    simulation.prepare();
-    const std::uint64_t touched = simulation.collision_frames();
-    double& least = frame_us[simulation.frame()];
-    const auto start = Clock::now();
-    simulation.step();
-    const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    if (simulation.collision_frames() > touched) least = least > 0 ? std::min(least, us) : us;
-    simulation.clear_events();
-    if (measures && simulation.frame() % every == 0) overlap.look(simulation, figures);
-  }
-  for (const Measure& measure : scenario.measures())
-    if (measure.name == "passes") figures.passes = measure.value;
-  figures.recorded = simulation.totals().penetration_max;
+/// Runs the scenario once.
+void play_once(const ScenarioOptions& all, std::uint64_t every, std::vector<double>& frame_us, Figures& figures,
+               bool measures) {
+  std::optional<TrueOverlap> overlap;
+  play(
+      all, frame_us, [&](const Scene& scene) { overlap.emplace(scene); },
+      [&](const Simulation& simulation) {
+        if (measures && simulation.frame() % every == 0) overlap->look(simulation, figures);
+      },
+      [&](const Simulation& simulation, const Scenario& scenario) {
+        for (const Measure& measure : scenario.measures())
+          if (measure.name == "passes") figures.passes = measure.value;
+        figures.recorded = simulation.totals().penetration_max;
+      });
 }
 
 Figures run(const Options& options, const Answer& answer, double clearance, std::uint64_t seed) {
   const ScenarioOptions all = options_of(options, answer, clearance, seed);
   Figures figures;
   for (std::uint64_t round = 0; round < options.rounds; ++round)
-    play(all, options.every, figures.frame_us, figures, /*measures=*/round == 0);
+    play_once(all, options.every, figures.frame_us, figures, /*measures=*/round == 0);
   std::erase(figures.frame_us, 0);
   return figures;
 }

@@ -4,13 +4,11 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <chrono>
-#include <filesystem>
 #include <limits>
 
+#include "bench/played_scenario.hpp"
 #include "bench/promise.hpp"
 #include "engine/base/quantile.hpp"
-#include "engine/script/scenario.hpp"
 
 namespace verisim::bench {
 namespace {
@@ -29,28 +27,14 @@ std::vector<Case> cases() {
 }
 
 /// Times of the frames with contact, the least of all rounds [us]; 0: no contact.
-void play(const Case& one, std::vector<double>& least, FrameCost& cost) {
-  using Clock = std::chrono::steady_clock;
+void play_case(const Case& one, std::vector<double>& least, FrameCost& cost) {
   ScenarioOptions options;
   options.path = std::string(VERISIM_SOURCE_DIR "/tests/outside/") + one.file;
   options.sets = one.sets;
   if (smoke()) options.duration = 0.2;
-  Inputs inputs = Inputs::live(std::filesystem::path(options.path).parent_path().string(), {});
-  Scenario scenario(options, inputs);
-  Simulation simulation(scenario.take_scene(), {});
-  scenario.attach(simulation);
-  least.resize(simulation.frames_planned());
-  while (simulation.frame() < simulation.frames_planned()) {
-    simulation.prepare();
-    const std::uint64_t touched = simulation.collision_frames();
-    double& best = least[simulation.frame()];
-    const auto start = Clock::now();
-    simulation.step();
-    const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    if (simulation.collision_frames() > touched) best = best > 0 ? std::min(best, us) : us;
-    simulation.clear_events();
-  }
-  cost = simulation.cost();
+  play(
+      options, least, [](const Scene&) {}, [](const Simulation&) {},
+      [&](const Simulation& simulation, const Scenario&) { cost = simulation.cost(); });
 }
 
 /// Argument: which case.
@@ -59,7 +43,7 @@ void BM_Conforming(benchmark::State& state) {
   state.SetLabel(std::string(one.file) + " " + one.name);
   std::vector<double> least;
   FrameCost cost;
-  for (auto _ : state) play(one, least, cost);
+  for (auto _ : state) play_case(one, least, cost);
   std::erase(least, 0);
   if (least.empty() && !smoke()) return wrong(state, "nothing touched");
   if (least.empty()) return;
