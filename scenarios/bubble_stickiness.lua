@@ -45,6 +45,8 @@ end
 
 local models = {omni = Devices.Sensable.PhantomOmni, touch = Devices.Geomagic.Touch,
   virtuose = Devices.Haption.Virtuose6D3545, ideal = Devices.Ideal}
+assert(models[p.device], "device is '" .. p.device .. "'; known: omni, touch, virtuose, ideal")
+assert(p.task == "touch" or p.task == "assemble", "task is '" .. p.task .. "'; known: touch, assemble")
 local middle = p.device == "virtuose" and {0, 0, 0.55} or {0, 0, 0}
 local reach = p.device == "virtuose" and 0.2 or 0.08                   -- m, half of the workspace
 local scale = p.device == "virtuose" and 3.2 or 10                     -- the bubble fills the same part of it
