@@ -9,4 +9,4 @@ if(NOT failed AND top STREQUAL SOURCE)
                   ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 endif()
 file(CONFIGURE OUTPUT ${OUT} @ONLY CONTENT
-     "#include \"engine/cli/origin.hpp\"\nstd::string verisim::cli::commit() { return \"@commit@\"; }\n")
+     "#include \"engine/session/origin.hpp\"\nstd::string verisim::commit() { return \"@commit@\"; }\n")

@@ -9,17 +9,20 @@
 --   tilt      30 of 30   5.0  5.2  8.1  11.1  12.5 s
 --   spiral    30 of 30   7.3  8.1  8.9   9.7  11.5 s
 local p = params{
-  clearance = 0.005,        -- m, between pin and hole, on the radius
-  voxelsize = 0.0045,       -- m
-  approach = 0.003,         -- m, how far the operator misjudges the hole's place, sideways
-  tilt = deg(1),            -- rad, how far the operator misjudges its direction
-  tremor = 0.0005,          -- m rms, at the hand
-  duration = 45.833,        -- s
-  half = false,
-  strategy = "path",        -- or "straight", "tilt", "spiral": the operator seeks the hole by what it sees, misjudged to any side
-  hybrid = "restore",       -- the dissertation's method; "off", "blend", "exact"
-  contact = "voxmap",       -- or "fcl": triangle against triangle, to compare with
-  integrator = "semi-implicit",
+  clearance = parameter(0.005, "m", "between pin and hole, on the radius"),
+  voxelsize = parameter(0.0045, "m", "of block and pin"),
+  approach = parameter(0.003, "m", "how far the operator misjudges the hole's place, sideways"),
+  tilt = parameter(deg(1), "rad", "how far the operator misjudges its direction"),
+  tremor = parameter(0.0005, "m", "rms, at the hand"),
+  duration = parameter(45.833, "s", "of the trial"),
+  half = parameter(false, "", "the sizes of the published script"),
+  strategy = parameter("path", "", "or straight, tilt, spiral: the operator seeks the hole by what it sees"),
+  hybrid = parameter("restore", "", "the dissertation's method; off, blend, exact"),
+  contact = parameter("voxmap", "", "or fcl: triangle against triangle, to compare with"),
+  integrator = parameter("semi-implicit", "", "or implicit"),
+  timestep = parameter(0.001, "s", "of a frame"),
+  spacing = parameter(0, "m", "of the points that are tested; 0: one per surface voxel"),
+  alignment = parameter("by-type", "", "or faas, pavlik: how well two faces match"),
 }
 
 local hole = 0.075
@@ -30,18 +33,20 @@ local scale = 4
 defineSimulationParameters{
   -- A pin that is tilted on purpose needs a coupling that turns it against what it is pressed on.
   maxStiffness = 300, maxAngularStiffness = p.strategy == "path" and 0.1 or 5,
-  hybrid = p.hybrid, contact = p.contact, integrator = p.integrator, duration = p.duration,
+  hybrid = p.hybrid, contact = p.contact, integrator = p.integrator, alignment = p.alignment, timestep = p.timestep,
+  duration = p.duration,
 }
+local spacing = p.spacing > 0 and p.spacing or nil
 
 addObject{
-  name = "block", fixed = true, density = 10, voxelsize = p.voxelsize,
+  name = "block", fixed = true, density = 10, voxelsize = p.voxelsize, pointspacing = spacing,
   Solid.box{0.375, 0.375, block_height} - Solid.cylinder{radius = hole, height = block_height},
 }
 
 local up = block_height / 2 + 0.05 + pin_length / 2          -- pin's centre while its end is 50 mm above the block
 local through = -block_height / 2 - 0.03 + pin_length / 2    -- while its end is 30 mm below
 local pin = addObject{
-  name = "pin", density = 10, voxelsize = p.voxelsize, position = {0, 0, up},
+  name = "pin", density = 10, voxelsize = p.voxelsize, pointspacing = spacing, position = {0, 0, up},
   Solid.cylinder{radius = hole - p.clearance, height = pin_length},
 }
 

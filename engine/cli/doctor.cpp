@@ -9,11 +9,12 @@
 #include <thread>
 
 #include "engine/cli/commands.hpp"
-#include "engine/cli/json_text.hpp"
-#include "engine/cli/origin.hpp"
-#include "engine/cli/realtime_priority.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/geometry/loader.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/origin.hpp"
+#include "engine/session/prepared_parts.hpp"
+#include "engine/session/realtime_priority.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -56,6 +57,14 @@ std::string cad_trouble() {
   }
 }
 
+/// "FOLDER: 12 entries, 3.4 MB".
+std::string prepared_text() {
+  const std::string folder = prepared_folder();
+  if (folder.empty()) return "none: there is no HOME; name a folder in VERISIM_CACHE";
+  const PreparedStore::Size size = PreparedStore::size_of(folder);
+  return fmt::format("{}: {} entries, {:.1f} MB", folder, size.entries, static_cast<double>(size.bytes) / 1e6);
+}
+
 ordered_json examine() {
   ordered_json j;
   j["version"] = VERISIM_VERSION;
@@ -71,6 +80,7 @@ ordered_json examine() {
   j["clock_step_ns"] = clock_step_ns();
   j["sleep_1ms_late_by_at_most_ns"] = sleep_lateness_ns();
   const std::string trouble = cad_trouble();
+  j["prepared_parts"] = prepared_text();
   j["cad_kernel"] = trouble.empty() ? "answers" : trouble;
   return j;
 }

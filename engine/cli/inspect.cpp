@@ -7,8 +7,10 @@
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/json_text.hpp"
+#include "engine/cli/inspect_scenario.hpp"
+#include "engine/cli/options.hpp"
 #include "engine/geometry/loader.hpp"
+#include "engine/session/json_text.hpp"
 #include "engine/simulation/inputs.hpp"
 #include "engine/voxel/association.hpp"
 #include "engine/voxel/voxelize.hpp"
@@ -24,6 +26,7 @@ struct InspectOptions {
   double scale = 0;
   double density = 1000;
   double deflection = 0;
+  std::vector<std::string> sets, binds;  ///< of a scenario
   bool json = false;
 };
 
@@ -152,7 +155,7 @@ void print_inspection(const ordered_json& report) {
                 m["radius_pin_m"].get<double>() * 1e3, m["clearance_m"].get<double>() * 1e3);
 }
 
-void inspect(const InspectOptions& o) {
+void inspect_model(const InspectOptions& o) {
   if (!std::isfinite(o.density) || o.density <= 0)
     fail(ErrorKind::usage, "--density must be finite and above 0 kg/m^3");
   Inputs inputs = Inputs::live(".", {o.model});
@@ -190,17 +193,38 @@ void inspect(const InspectOptions& o) {
 }  // namespace
 
 void add_inspect(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("inspect", "Parts, entities, mating features, voxels of a model");
+  auto* command = app.add_subcommand(
+      "inspect", "Parts, entities, mating features, voxels of a model; of a scenario what it will need, and why");
   auto o = std::make_shared<InspectOptions>();
-  command->add_option("MODEL", o->model, "STEP, BREP, STL, OBJ, PLY or glTF file")->required();
+  command->add_option("MODEL | SCENARIO.lua", o->model, "STEP, BREP, STL, OBJ, PLY or glTF file, or a scenario")
+      ->required();
   command->add_option("--voxel", o->voxel, "Voxel size [m]: adds surface voxels, sets of faces and edges, memory");
   command->add_option("--scale", o->scale, "Metres per unit of a mesh file (0.001: it is in millimetres)");
   command->add_option("--density", o->density, "kg/m^3 for the mass (default 1000)");
   command->add_option("--deflection", o->deflection, "Chord error of the tessellation [m]");
+  command->add_option("--set", o->sets, "KEY=VALUE: scenario parameter, as of 'verisim run'")->take_all();
+  command->add_option("--bind", o->binds, "NAME=SOURCE: drive the device NAME, as of 'verisim run'")->take_all();
   command->add_flag("--json", o->json, "One JSON object on stdout");
-  command->footer("Example: verisim inspect bearing.step --voxel 0.0005");
+  command->footer(
+      "Example: verisim inspect bearing.step --voxel 0.0005\n"
+      "         verisim inspect scenarios/peg_in_hole.lua --set clearance=mm(2)");
   command->callback([=, &exit_code] {
-    inspect(*o);
+    const bool is_scenario = std::filesystem::path(o->model).extension() == ".lua";
+    for (const char* option : {"--voxel", "--scale", "--density", "--deflection"})
+      if (is_scenario && command->count(option) > 0)
+        fail(ErrorKind::usage, "{}: a scenario says it itself; give {} with a model", option, option);
+    for (const char* option : {"--set", "--bind"})
+      if (!is_scenario && command->count(option) > 0)
+        fail(ErrorKind::usage, "{}: a model has no parameters; give {} with a scenario", option, option);
+    if (is_scenario) {
+      ScenarioOptions options;
+      options.path = o->model;
+      options.sets = split_pairs("--set", o->sets);
+      options.binds = split_pairs("--bind", o->binds);
+      inspect_scenario(options, o->json);
+    } else {
+      inspect_model(*o);
+    }
     exit_code = 0;
   });
 }

@@ -10,9 +10,10 @@
 #include "engine/base/standard_streams.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/interrupts.hpp"
 #include "engine/cli/memory_wanted.hpp"
 #include "engine/cli/streams.hpp"
+#include "engine/session/interrupts.hpp"
+#include "engine/session/memory_use.hpp"
 
 namespace {
 
@@ -35,11 +36,15 @@ int run_command(int argc, char** argv) {
       "Example: verisim run scenarios/peg_in_hole.lua --set clearance=mm(2)\nverisim COMMAND --help explains each.");
   int exit_code = 0;
   verisim::cli::add_run(app, exit_code);
+  verisim::cli::add_batch(app, exit_code);
   verisim::cli::add_replay(app, exit_code);
   verisim::cli::add_recover(app, exit_code);
   verisim::cli::add_inspect(app, exit_code);
   verisim::cli::add_trace(app, exit_code);
   verisim::cli::add_wii(app, exit_code);
+  verisim::cli::add_compare(app, exit_code);
+  verisim::cli::add_stability(app, exit_code);
+  verisim::cli::add_tradeoff(app, exit_code);
   verisim::cli::add_reproduce(app, exit_code);
   verisim::cli::add_doctor(app, exit_code);
   try {
@@ -66,14 +71,14 @@ std::string command_of(int argc, char** argv) {
 /// The same, and every error turned into its line and exit code.
 int guarded_command(int argc, char** argv) {
   using verisim::ErrorKind;
-  const verisim::cli::MemoryUse use(command_of(argc, argv));
+  const verisim::MemoryUse use(command_of(argc, argv));
   try {
     check_arguments(argc, argv);
     return run_command(argc, argv);
   } catch (const verisim::Error& error) {
-    const bool interrupted = error.kind() == ErrorKind::interrupted && verisim::cli::was_interrupted();
+    const bool interrupted = error.kind() == ErrorKind::interrupted && verisim::was_interrupted();
     if (!interrupted) verisim::cli::print_error(error.what());
-    return interrupted ? verisim::cli::interrupted_exit_code() : error.exit_code();
+    return interrupted ? verisim::interrupted_exit_code() : error.exit_code();
   } catch (const std::bad_alloc&) {
     verisim::cli::print_error(verisim::cli::out_of_memory_text().c_str());
   } catch (const std::length_error&) {  // more than any memory could hold
@@ -91,10 +96,9 @@ int main(int argc, char** argv) {
   verisim::cli::prepare_streams();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, not a death
   std::signal(SIGXFSZ, SIG_IGN);
-  verisim::cli::handle_interrupts();
+  verisim::handle_interrupts();
   const int exit_code = guarded_command(argc, argv);
-  if (verisim::cli::was_interrupted() && exit_code == verisim::cli::interrupted_exit_code())
-    verisim::cli::print_error(
-        (verisim::cli::interruption() + "; the files that it wrote are closed and valid").c_str());
+  if (verisim::was_interrupted() && exit_code == verisim::interrupted_exit_code())
+    verisim::cli::print_error((verisim::interruption() + "; the files that it wrote are closed and valid").c_str());
   return verisim::cli::finish_streams(exit_code);
 }

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/cli/progress_line.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/ruler/ruler.hpp"
+#include "engine/session/progress_line.hpp"
 #include "engine/simulation/scene.hpp"
 
 namespace verisim::cli {

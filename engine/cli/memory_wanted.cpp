@@ -5,7 +5,8 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
-#include <utility>
+
+#include "engine/session/memory_use.hpp"
 
 namespace {
 
@@ -28,8 +29,6 @@ void* allocate_or_throw(std::size_t bytes, std::size_t alignment) {
   return memory;
 }
 #endif
-
-std::string current_use = "this command";
 
 std::string with_unit(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
@@ -66,19 +65,13 @@ void operator delete(void* memory, const std::nothrow_t&) noexcept {
 
 namespace verisim::cli {
 
-MemoryUse::MemoryUse(std::string what) : outer_(std::exchange(current_use, std::move(what))) {}
-// An error that leaves keeps the name: it is read where the error is caught.
-MemoryUse::~MemoryUse() {
-  if (std::uncaught_exceptions() == 0) current_use = std::move(outer_);
-}
-
 std::string out_of_memory_text() {
   const std::size_t bytes = refused_bytes;
   const std::string amount = bytes > 0 ? with_unit(static_cast<double>(bytes)) + " more" : "more than there is";
   return fmt::format(
       "out of memory: {} wanted {}; make it smaller (larger voxels, fewer parts, a shorter duration) or "
       "use a machine with more memory",
-      current_use, amount);
+      memory_use(), amount);
 }
 
 }  // namespace verisim::cli

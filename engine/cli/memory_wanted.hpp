@@ -5,18 +5,6 @@
 
 namespace verisim::cli {
 
-/// While it lives, memory is wanted for this: "building the scene of pin.lua". The innermost counts.
-class MemoryUse {
- public:
-  explicit MemoryUse(std::string what);
-  ~MemoryUse();
-  MemoryUse(const MemoryUse&) = delete;
-  MemoryUse& operator=(const MemoryUse&) = delete;
-
- private:
-  std::string outer_;
-};
-
 /// One line about the request that failed: "out of memory: recording 90000000 frames wanted 720.0 MB more; …".
 [[nodiscard]] std::string out_of_memory_text();
 

@@ -41,6 +41,12 @@ CLI::Validator seconds() {
   return CLI::Validator(check, "SECONDS");
 }
 
+void add_cache_option(CLI::App& command, bool& no_cache) {
+  command.add_flag("--no-cache", no_cache,
+                   "Prepare all parts anew; without it those that a run prepared before are read from VERISIM_CACHE "
+                   "(default: ~/.cache/verisim). Same bits");
+}
+
 void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   add_out_options(command, o.out,
                   "Run file to write; only a run file is replaced (default: runs/SCENARIO.h5, or runs/SCENARIO-2.h5 "
@@ -59,6 +65,7 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_flag("--realtime", o.realtime, "Pace by the wall clock, with real-time priority if the system grants it");
   command.add_flag("--json", o.json, "One JSON object on stdout, all else on stderr");
   command.add_flag("--quiet", o.quiet, "No progress, no summary");
+  add_cache_option(command, o.no_cache);
   command.add_flag("--no-embed", o.no_embed, "Leave the content of input files out of the run file");
 }
 

@@ -29,7 +29,11 @@ struct SimulateOptions {
   bool json = false;
   bool quiet = false;
   bool no_embed = false;
+  bool no_cache = false;
 };
+
+/// --no-cache.
+void add_cache_option(CLI::App& command, bool& no_cache);
 
 /// Declares them on a command.
 void add_simulate_options(CLI::App& command, SimulateOptions& options);

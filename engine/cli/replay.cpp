@@ -7,15 +7,15 @@
 #include "engine/base/hash.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/json_text.hpp"
 #include "engine/cli/measure.hpp"
 #include "engine/cli/options.hpp"
-#include "engine/cli/origin.hpp"
-#include "engine/cli/session.hpp"
 #include "engine/cli/stored_facts.hpp"
 #include "engine/cli/stored_run.hpp"
-#include "engine/cli/summary.hpp"
 #include "engine/contact/query.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/origin.hpp"
+#include "engine/session/session.hpp"
+#include "engine/session/summary.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -39,8 +39,8 @@ bool is_needed_to_replay(const std::string& altered) {
 
 /// Of pairs that keep their voxels' contacts format 1 told those of which one body alone had no b-rep.
 bool is_later_than_format_1(const Event& event) {
-  static const std::set<std::string> kinds = {"near",    "tunnelling", "energy", "late contact",
-                                              "gravity", "sinking",    "voxels"};
+  static const std::set<std::string> kinds = {"near",    "tunnelling", "energy",  "late contact", "gravity",
+                                              "sinking", "voxels",     "overlap", "rounding"};
   if (kinds.count(event.kind) != 0) return true;
   const auto says = [&](const char* words) { return event.text.find(words) != std::string::npos; };
   return event.kind == "hybrid" && says("stay with the voxels") && !says("has no b-rep: its contacts with '");

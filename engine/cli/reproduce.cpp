@@ -5,12 +5,14 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/json_text.hpp"
-#include "engine/cli/progress_line.hpp"
-#include "engine/cli/recorded_run.hpp"
-#include "engine/cli/stop_watch.hpp"
+#include "engine/cli/scenarios_folder.hpp"
 #include "engine/record/file_replace.hpp"
 #include "engine/reproduce/reproductions.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/prepared_parts.hpp"
+#include "engine/session/progress_line.hpp"
+#include "engine/session/recorded_run.hpp"
+#include "engine/session/stop_watch.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -19,7 +21,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 using reproduce::Reproduction;
-using reproduce::Row;
 
 constexpr const char* kDefaultFolder = "runs/reproduce";
 
@@ -33,15 +34,6 @@ struct ReproduceOptions {
   bool force = false;
 };
 
-/// The shipped scenarios: in the folder beside the program's own, or one further up.
-std::string scenarios_folder() {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  for (fs::path folder = program.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
-    if (fs::exists(folder / "scenarios" / "peg_in_hole.lua", ignored)) return (folder / "scenarios").string();
-  return "scenarios";
-}
-
 /// A run as `verisim run` makes it. Error(diverged, io, interrupted) if it did not come to its end.
 reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::RunRequest& request, bool force) {
   ScenarioOptions options;
@@ -49,7 +41,7 @@ reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::Run
   options.sets = request.sets;
   options.duration = request.duration;
   options.seed = request.seed;
-  auto inputs = std::make_unique<Inputs>(Inputs::live(folder, {}));
+  auto inputs = std::make_unique<Inputs>(Inputs::live(folder, {}, prepared_parts()));
   Session session = open_session(options, std::move(inputs), 1, true);
   RecordedRun run = record_run(
       session, {.file = request.file, .force = force, .paced = request.paced, .empty_block = request.empty_block});
@@ -66,7 +58,7 @@ ordered_json json_of(const reproduce::Figure& figure) {
   return std::get<double>(figure);
 }
 
-ordered_json json_of(const Row& row) {
+ordered_json json_of(const reproduce::Row& row) {
   const std::optional<double> q = ratio(row);
   ordered_json j = {{"id", row.id},
                     {"what", row.what},
@@ -81,9 +73,9 @@ ordered_json json_of(const Row& row) {
 }
 
 /// Every row, and every file that one of them comes from, once.
-std::string json_of_rows(const std::vector<Row>& rows) {
+std::string json_of_rows(const std::vector<reproduce::Row>& rows) {
   ordered_json j = {{"rows", ordered_json::array()}, {"runs", ordered_json::array()}};
-  for (const Row& row : rows) {
+  for (const reproduce::Row& row : rows) {
     j["rows"].push_back(json_of(row));
     for (const std::string& file : row.runs)
       if (std::find(j["runs"].begin(), j["runs"].end(), file) == j["runs"].end()) j["runs"].push_back(file);
@@ -132,7 +124,7 @@ void run_reproduce(const ReproduceOptions& o) {
   workshop.run = [&](const reproduce::RunRequest& request) { return run_scenario(scenarios, request, o.force); };
   workshop.force = o.force;
   make_folder_of(workshop.file("any"));
-  std::vector<Row> rows;
+  std::vector<reproduce::Row> rows;
   for (const Reproduction& r : reproduce::reproductions()) {
     if (!is_wanted(o, r)) continue;
     const std::string name = fmt::format("{:<4} {:<40}", r.id, r.what);
@@ -140,7 +132,7 @@ void run_reproduce(const ReproduceOptions& o) {
     {
       const ProgressLine line(!o.quiet);
       line.say(name);
-      for (Row& row : r.measure(workshop)) rows.push_back(std::move(row));
+      for (reproduce::Row& row : r.measure(workshop)) rows.push_back(std::move(row));
     }
     if (!o.quiet) std::fprintf(stderr, "%s %6.1f s\n", name.c_str(), watch.seconds());
   }

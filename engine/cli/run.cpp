@@ -1,14 +1,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
-#include "engine/base/error.hpp"
-#include "engine/base/user_file.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
-#include "engine/cli/recorded_run.hpp"
 #include "engine/cli/streams.hpp"
 #include "engine/contact/query.hpp"
+#include "engine/script/parameters.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/prepared_parts.hpp"
+#include "engine/session/recorded_run.hpp"
 
 namespace verisim::cli {
 namespace {
@@ -19,18 +21,23 @@ std::string default_run_file(const std::string& scenario) {
   return (fs::path("runs") / fs::path(scenario).stem()).string() + ".h5";
 }
 
-/// Of a symbolic link what it leads to: its folder is the scenario's, with the models and scripts in it.
-std::string end_of_links(const std::string& scenario) {
-  const std::string type = other_than_plain(scenario);
-  if (!type.empty()) fail(ErrorKind::input, "{}: is {}, a file is wanted; name a scenario", scenario, type);
-  std::error_code error;
-  if (!fs::is_symlink(scenario, error)) return scenario;
-  const fs::path end = fs::canonical(scenario, error);
-  if (error) fail(ErrorKind::input, "{}: a symbolic link that leads nowhere ({})", scenario, error.message());
-  return end.string();
+/// What can be set: for people, or as JSON.
+std::string text_of(const std::vector<ParameterDeclaration>& parameters, bool as_json) {
+  using nlohmann::ordered_json;
+  ordered_json list = ordered_json::array();
+  std::string table = fmt::format("{:<20} {:<20} {:<6} {}\n", "parameter", "default", "unit", "meaning");
+  for (const ParameterDeclaration& p : parameters) {
+    list.push_back(
+        {{"name", p.name}, {"default", ordered_json::parse(p.value_json)}, {"unit", p.unit}, {"meaning", p.meaning}});
+    std::string row = fmt::format("{:<20} {:<20} {:<6} {}", p.name, p.value_json, p.unit, p.meaning);
+    row.erase(row.find_last_not_of(' ') + 1);
+    table += row + "\n";
+  }
+  if (as_json) return json_text(ordered_json{{"parameters", list}}) + "\n";
+  return parameters.empty() ? "this scenario has no parameters\n" : table;
 }
 
-int run(const std::string& named, const SimulateOptions& o) {
+int run(const std::string& named, const SimulateOptions& o, bool parameters) {
   const std::string scenario = end_of_links(named);
   use_simd_target(o.simd);
   ScenarioOptions options;
@@ -39,7 +46,13 @@ int run(const std::string& named, const SimulateOptions& o) {
   options.binds = split_pairs("--bind", o.binds);
   options.seed = o.seed;
   options.duration = o.duration;
-  auto inputs = std::make_unique<Inputs>(Inputs::live(fs::path(scenario).parent_path().string(), named_paths(options)));
+  const std::shared_ptr<PreparedStore> store = prepared_parts(!o.no_cache);
+  auto inputs =
+      std::make_unique<Inputs>(Inputs::live(fs::path(scenario).parent_path().string(), named_paths(options), store));
+  if (parameters) {
+    std::fputs(text_of(DeclaredParameters(options, *inputs).all(), o.json).c_str(), stdout);
+    return 0;
+  }
   Session session = open_session(options, std::move(inputs), o.threads, o.quiet);
   const bool is_default = o.out.path.empty();
   const RecordedRun run = record_run(session, {.file = is_default ? default_run_file(scenario) : o.out.path,
@@ -48,6 +61,7 @@ int run(const std::string& named, const SimulateOptions& o) {
                                                .paced = o.realtime,
                                                .embed = !o.no_embed,
                                                .progress = !o.quiet});
+  if (!o.quiet) warn_of_damage(store.get());
   if (!run.loop.error.empty()) print_error(run.loop.error.c_str());
   if (o.json)
     std::printf("%s\n", to_json(run.figures).c_str());
@@ -64,8 +78,10 @@ void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("SCENARIO", *scenario, "Lua script that describes the scene")->required();
   add_simulate_options(*command, *options);
+  auto parameters = std::make_shared<bool>(false);
+  command->add_flag("--parameters", *parameters, "List what --set can change, and run nothing");
   command->footer("Example: verisim run scenarios/peg_in_hole.lua --set clearance=mm(2) --json");
-  command->callback([=, &exit_code] { exit_code = run(*scenario, *options); });
+  command->callback([=, &exit_code] { exit_code = run(*scenario, *options, *parameters); });
 }
 
 }  // namespace verisim::cli

@@ -9,7 +9,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
-#include "engine/cli/origin.hpp"
+#include "engine/session/origin.hpp"
 
 namespace verisim::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/cli/summary.hpp"
+#include "engine/session/summary.hpp"
 
 namespace verisim::cli {
 

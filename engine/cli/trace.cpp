@@ -8,11 +8,11 @@
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/json_text.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/record/synth.hpp"
 #include "engine/record/trace.hpp"
+#include "engine/session/json_text.hpp"
 #include "engine/simulation/inputs.hpp"
 
 namespace verisim::cli {

@@ -5,9 +5,9 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/cli/json_text.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
+#include "engine/session/json_text.hpp"
 #include "engine/wii/coverage.hpp"
 #include "engine/wii/place.hpp"
 

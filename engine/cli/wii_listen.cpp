@@ -7,14 +7,14 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
-#include "engine/cli/interrupts.hpp"
-#include "engine/cli/json_text.hpp"
 #include "engine/cli/options.hpp"
-#include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/script/wii_recording.hpp"
+#include "engine/session/interrupts.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/stop_watch.hpp"
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
 

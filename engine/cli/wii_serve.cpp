@@ -6,12 +6,12 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cli/head_server.hpp"
-#include "engine/cli/interrupts.hpp"
-#include "engine/cli/json_text.hpp"
 #include "engine/cli/options.hpp"
-#include "engine/cli/stop_watch.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wire_clock.hpp"
+#include "engine/session/interrupts.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/stop_watch.hpp"
 #include "engine/wii/validate.hpp"
 
 namespace verisim::cli {

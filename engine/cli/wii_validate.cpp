@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
-#include "engine/cli/json_text.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/record/output_place.hpp"
+#include "engine/session/json_text.hpp"
 #include "engine/simulation/inputs.hpp"
 #include "engine/wii/validate.hpp"
 #include "engine/wii/validation_plot.hpp"

@@ -55,7 +55,7 @@ struct Constraint {
   // The members below are set only if kind is not `none`: most pairs give none, and they shall cost nothing.
   Pairing pairing;
   NormalField field;
-  Side normal_source;  ///< the side whose data gives the field of normals; `neither`: both
+  Side normal_source;  ///< the side whose data gives the field of normals; `neither`: two equal planes
   Side pin;            ///< the side that is inside the other
   bool unilateral;     ///< can push but not pull: a force of the wrong sense is an artefact too (eq. 8.9)
   double clearance;    ///< hole's radius minus pin's [m]; 0 where radii have no meaning

@@ -13,15 +13,11 @@ Vector3d direction_in_a(const Constraint& c, Side side, const Pose& X_AB) {
   return side == Side::b ? X_AB.rotation * c.b.direction : c.a.direction;
 }
 
-/// From B towards A. Two planes: midway between B's normal out of B and A's normal into A, so that neither body is
-/// preferred; they are opposed, or alpha is 0.
+/// From B towards A. Of two planes of one size it is A's normal into A: contacts are B's points, pressed along their
+/// way in A's coordinates, so a normal that is constant there gives their springs a potential.
 Vector3d constant_normal(const Constraint& c, const Pose& X_AB) {
-  if (c.normal_source == Side::a) return -c.a.direction;
   if (c.normal_source == Side::b) return X_AB.rotation * c.b.direction;
-  const Vector3d sum = X_AB.rotation * c.b.direction - c.a.direction;
-  const double length = sum.norm();
-  if (length == 0) return Vector3d::Zero();
-  return sum / length;
+  return -c.a.direction;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 // The two agree at f.n = 0, so f' is continuous in f. f' is never longer than f.
 //
 // n(x) by kind ("unilateral" as above, else both senses are kept):
-//   planar       the planes' normal. Unilateral.                                       leaves 2 slides, 1 turn
+//   planar       the larger plane's normal, of equal ones A's. Unilateral.                 leaves 2 slides, 1 turn
 //   cylindrical  away from the axis: n = r = x - c' (8.3 to 8.5).                        leaves 1 slide, 1 turn
 //   conical      the flank is tilted by the half angle h: n = cos h r/|r| - sin h v, v towards the wide end, outward
 //                for the inner cone. Unilateral: out of the seat it is free.             leaves 1 turn

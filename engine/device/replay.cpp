@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
@@ -16,12 +17,20 @@ constexpr double kSimultaneous = 1e-9;
 /// m/s and rad/s: no hand moves faster. A trace that does has lost samples, or its tracker jumped.
 constexpr double kFastest = 10, kFastestTurn = 60;
 
+constexpr const char* kStuckDown = "has a button that is down in every sample: it never lets go";
+constexpr const char* kStuckUp = "has a button that is up in every sample: it takes hold of nothing by itself";
+
 class ReplayDevice final : public Device {
  public:
   ReplayDevice(std::string name, HapticSamples samples) : name_(std::move(name)), samples_(std::move(samples)) {
     reading_.raw = reading_.handle = samples_.pose.front();
     for (const Pose& pose : samples_.pose)
       travel_ = std::max(travel_, (pose.position - samples_.pose.front().position).norm());
+    const auto& button = samples_.button;
+    const bool is_stuck = button.size() > 1 && std::all_of(button.begin(), button.end(), [&](std::uint8_t down) {
+                            return (down != 0) == (button.front() != 0);
+                          });
+    if (is_stuck) stuck_ = button.front() != 0 ? kStuckDown : kStuckUp;
   }
 
   [[nodiscard]] const std::string& name() const override { return name_; }
@@ -54,6 +63,7 @@ class ReplayDevice final : public Device {
   [[nodiscard]] const DeviceReading& reading() const override { return reading_; }
   void render(const Wrench& wrench, const DeviceFrame&) override { rendered_ = wrench; }
   void report(DeviceNotes& notes) override {
+    if (stuck_ != nullptr) notes.add("button", std::exchange(stuck_, nullptr));
     const bool is_fast = reading_.velocity.linear.norm() > kFastest || reading_.velocity.angular.norm() > kFastestTurn;
     if (is_fast && !was_fast_) notes.add("speed", "follows a trace that is faster than 10 m/s or 60 rad/s: it jumps");
     was_fast_ = is_fast;
@@ -72,6 +82,7 @@ class ReplayDevice final : public Device {
   std::size_t next_ = 0;  ///< first sample later than the last t: time only goes forward
   double last_t_ = -std::numeric_limits<double>::infinity();
   double travel_ = 0;
+  const char* stuck_ = nullptr;  ///< of a recorded button that never changes: what is to be said of it, once
   bool was_fast_ = false, had_ended_ = false;
   DeviceReading reading_;
   Wrench rendered_;

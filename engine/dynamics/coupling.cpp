@@ -10,8 +10,8 @@ namespace verisim {
 namespace {
 
 /// Left side of the stability rule, x = dt sqrt(k / m).
-double budget_used_by(double x) {
-  return x * x + 4 * x;
+double budget_used_by(double x, double zeta) {
+  return x * x + 4 * zeta * x;
 }
 
 Vector3d rest_within(double sum_max, const Vector3d& spring, const Vector3d& damper) {
@@ -29,9 +29,11 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
   VERISIM_ASSERT(is_not_negative(limits.angular_stiffness_max));
   VERISIM_ASSERT(limits.force_max > 0);
   VERISIM_ASSERT(limits.torque_max > 0);
+  VERISIM_ASSERT(is_not_negative(limits.damping_ratio));
   const double inertia_min = smallest_eigenvalue(body.inertia_B);
   VERISIM_ASSERT(inertia_min > 0);
-  const double x_max = std::sqrt(4 + kCouplingBudget) - 2;  // x^2 + 4x = kCouplingBudget
+  const double zeta = limits.damping_ratio + 0.0;                                // of the two zeros the positive
+  const double x_max = std::sqrt(4 * zeta * zeta + kCouplingBudget) - 2 * zeta;  // x^2 + 4 zeta x = kCouplingBudget
   const double bound = x_max * x_max / (dt * dt);
   Coupling c;
   c.stiffness = stabilize ? std::min(limits.stiffness_max, bound * body.mass) : limits.stiffness_max;
@@ -39,11 +41,11 @@ Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& l
       stabilize ? std::min(limits.angular_stiffness_max, bound * inertia_min) : limits.angular_stiffness_max;
   c.force_max = limits.force_max;
   c.torque_max = limits.torque_max;
-  c.damping = 2 * std::sqrt(c.stiffness * body.mass);
-  c.angular_damping_B = 2 * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
+  c.damping = 2 * zeta * std::sqrt(c.stiffness * body.mass);
+  c.angular_damping_B = 2 * zeta * std::sqrt(c.angular_stiffness) * square_root(body.inertia_B);
   if (!stabilize) return c;
-  c.budget_used = std::max(budget_used_by(dt * std::sqrt(c.stiffness / body.mass)),
-                           budget_used_by(dt * std::sqrt(c.angular_stiffness / inertia_min)));
+  c.budget_used = std::max(budget_used_by(dt * std::sqrt(c.stiffness / body.mass), zeta),
+                           budget_used_by(dt * std::sqrt(c.angular_stiffness / inertia_min), zeta));
   return c;
 }
 

@@ -4,12 +4,14 @@
 // World coordinates W. The target moves with the handle: X_WT = X_WH X_HB with X_HB as it was at the grasp.
 //   force  = k d + b (v_T - v_C)              d = p_T - p_C                    [m]
 //   torque = kappa e + B (omega_T - omega)    e = rotation vector of R_T R^T   [rad]
-// Critically damped: b = 2 sqrt(k m); B = 2 sqrt(kappa) I^(1/2), that is 2 sqrt(kappa I_i) about each principal axis.
-// Saturation: the sum of spring and damper is limited to force_max and torque_max (as vectors), like a slipping clutch.
+// Critically damped, unless a damping ratio zeta scales both: b = 2 zeta sqrt(k m); B = 2 zeta sqrt(kappa) I^(1/2),
+// that is 2 zeta sqrt(kappa I_i) about each principal axis. Saturation: the sum of spring and damper is limited to
+// force_max and torque_max (as vectors), like a slipping clutch.
 //
-// Stability rule (ORACLES section 2: k dt^2/m + 2 b dt/m < 4, the stability budget). With x = dt sqrt(k/m) and critical
-// damping the left side is x^2 + 4x. The coupling may use at most kCouplingBudget = 2 of it and leaves the rest to
-// contacts: k <= (sqrt(6) - 2)^2 m/dt^2 = 0.202 m/dt^2, and the same for kappa with the smallest principal inertia.
+// Stability rule (ORACLES section 2: k dt^2/m + 2 b dt/m < 4, the stability budget). With x = dt sqrt(k/m) the left
+// side is x^2 + 4 zeta x. The coupling may use at most kCouplingBudget = 2 of it and leaves the rest to contacts:
+// critically damped, k <= (sqrt(6) - 2)^2 m/dt^2 = 0.202 m/dt^2, and the same for kappa with the smallest principal
+// inertia.
 #pragma once
 
 #include <limits>
@@ -26,6 +28,7 @@ struct CouplingLimits {
   double angular_stiffness_max = 0.1;                           ///< N m/rad (maxAngularStiffness)
   double force_max = std::numeric_limits<double>::infinity();   ///< N (maxCouplingForce)
   double torque_max = std::numeric_limits<double>::infinity();  ///< N m (maxCouplingTorque)
+  double damping_ratio = 1;                                     ///< zeta, of the critical damping
 };
 
 /// Constants of one coupling.
@@ -43,7 +46,7 @@ struct Coupling {
 
 /// @param stabilize  apply the stability rule, needed for explicit forces; a linearly implicit integrator needs none
 /// @pre dt is finite and above 0; the body has mass and inertia; stiffnesses are finite and not negative; the limits of
-/// force and torque are above 0
+/// force and torque are above 0; damping_ratio is finite and not negative
 [[nodiscard]] Coupling make_coupling(const RigidBody& body, double dt, const CouplingLimits& limits, bool stabilize);
 
 /// Target pose of the body and its velocity.

@@ -1,5 +1,8 @@
 #include "engine/dynamics/free_rotation.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
@@ -30,6 +33,12 @@ struct Turning {
   }
 };
 
+/// Into how many parts a step is divided in which a body turns by at most `angle` [rad].
+double turns_of(double angle) {
+  constexpr double kAngle = 0.5, kMost = 256;
+  return angle > kAngle ? std::min(kMost, std::ceil(angle / kAngle)) : 1;
+}
+
 }  // namespace
 
 Quaterniond turned_freely(const RigidBody& body, const Vector3d& L_W, double dt) {
@@ -37,10 +46,14 @@ Quaterniond turned_freely(const RigidBody& body, const Vector3d& L_W, double dt)
   VERISIM_ASSERT(is_unit(body.R_WB));
   const Vector3d& I = body.principal_moments;
   VERISIM_ASSERT(I[0] > 0);
+  const double turns = turns_of(L_W.norm() / I[0] * dt);
   Turning body_axes{body.principal_axes_B, body.principal_axes_B.transpose() * (body.R_WB.conjugate() * L_W)};
-  body_axes.turn(0, 1 / I[0] - 1 / I[1], dt / 2);
-  body_axes.turn(2, 1 / I[2] - 1 / I[1], dt);
-  body_axes.turn(0, 1 / I[0] - 1 / I[1], dt / 2);
+  const double part = dt / turns;
+  for (double i = 0; i < turns; ++i) {
+    body_axes.turn(0, 1 / I[0] - 1 / I[1], part / 2);
+    body_axes.turn(2, 1 / I[2] - 1 / I[1], part);
+    body_axes.turn(0, 1 / I[0] - 1 / I[1], part / 2);
+  }
   return (rotation_from_vector(dt / I[1] * L_W) * body.R_WB * body_axes.turn_B).normalized();
 }
 

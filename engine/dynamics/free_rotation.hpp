@@ -7,6 +7,9 @@
 // of 1. So the step is of second order, symmetric in time and symplectic: energy swings and does not drift, and a spin
 // about the greatest or the smallest moment stays where it is. Symmetric bodies turn exactly, whatever the step.
 //
+// A step in which the body turns by more than half a radian is divided into parts of that angle, at most 256: without
+// that the energy of a brick swings by 0.8 % at 1 rad a step and by a factor of three at 10.
+//
 // Source: splitting of the free rigid body's Hamiltonian (Fasso, J. Comput. Phys. 189, 2003: comparison of splittings).
 // The middle moment is taken because the error is proportional to the product of the two other factors. Measured, 200
 // bodies of edge ratios up to 30 at 0.5 to 30 rad/s, 10 s, steps of 1 ms: orientation off by 1.2e-6 rad in the median,
@@ -17,8 +20,8 @@
 
 namespace verisim {
 
-/// R_WB after dt. L_W: angular momentum [kg m^2/s], world coordinates. Four rotations, about 0.2 us. Infinite numbers
-/// give an orientation that is not finite.
+/// R_WB after dt. L_W: angular momentum [kg m^2/s], world coordinates. Four rotations, about 0.2 us; of fast spins some
+/// 0.15 us for every half radian. Infinite numbers give an orientation that is not finite.
 /// @pre dt is finite and above 0; the body has principal moments, and a unit rotation
 [[nodiscard]] Quaterniond turned_freely(const RigidBody& body, const Vector3d& L_W, double dt);
 

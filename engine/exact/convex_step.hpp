@@ -29,9 +29,10 @@
 //     momentum, too.
 // Friction. A grip is a quadratic term more, dt c/2 |w|^2, of the velocity w of one body against the other at one
 // point: along two tangents, and of their spin about the normal. It takes energy and keeps momentum. How large c is the
-// caller says. Late rows, of more than kDenseMax bodies or with restitution. A row that overlaps by more than the pair
-// did before and the approach explains was not there when it should have been. Nothing compressed it, so it has no
-// energy to give: it moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
+// caller says. Late rows, of more than kDenseMax bodies, with restitution, or of a pair that began inside of each
+// other. A row that overlaps by more than the pair did before and the approach explains was not there when it should
+// have been. Nothing compressed it, so it has no energy to give: it moves the bodies apart, no faster than kPushOut,
+// and asks for J w >= 0.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
@@ -78,6 +79,7 @@ class ConvexStep {
   struct Pair {
     double restitution = 0;                                    ///< e, in [0, 1]; 0: none of the rows is ever hit
     double overlap = std::numeric_limits<double>::infinity();  ///< m, before: deeper rows may be late
+    bool began_inside = false;  ///< overlapped when it was first seen: deeper rows are late, by how little ever
   };
   /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
   /// @pre both are numbers from add_body or kFixed, and not the same

@@ -33,8 +33,9 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold) {
   const double factor = std::max(1.0, kRigid * mass / (dt * dt) / stiffest);
   for (std::size_t r = run.begin; r < run.end; ++r) {
     Row& row = rows_[r];
-    const double known = run.pair.overlap + kUnknown;
-    const bool watches = bodies_.size() > kDenseMax || run.pair.restitution > 0;
+    // What began inside leaves no faster than kPushOut, however small the step is.
+    const double known = run.pair.overlap + (run.pair.began_inside ? std::min(kUnknown, kPushOut * dt) : kUnknown);
+    const bool watches = bodies_.size() > kDenseMax || run.pair.restitution > 0 || run.pair.began_inside;
     const double overlap = row.curving - row.g;
     if (run.pair.restitution == 0 && overlap <= known) continue;
     const double approach = -rate(row, &Body::before);

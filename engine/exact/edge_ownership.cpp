@@ -77,8 +77,9 @@ double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Can
 /// against edge, nothing would push at all, and the place stays with this face; so does one flush with the face across.
 double kept_share(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge, std::uint32_t face,
                   const SurfaceAt& there, const Candidate& c) {
-  // A place that was inside of this face before did not come through it: its own depth is of no meaning here.
-  const double came = std::max(0.0, -c.at.normal.dot(pair.moved(c.p, pair.motion.last_twist)));
+  // A place that was inside of this face before, by more than these bodies are pressed into each other, did not come
+  // through it: its own depth is of no meaning here.
+  const double came = std::max(0.0, -c.at.normal.dot(pair.moved(c.p, pair.motion.last_twist))) + pair.motion.overlap;
   if (-c.at.distance > came + pair.motion.thresholds.touching) return 0;
   double least = compared_distances(pair, c.p, c.at, there).other;
   // At the end of a step that stopped it a place may lie on the edge to rounding, and go on in the next.

@@ -128,6 +128,7 @@ struct ExactBody {
   /// or an edge without a polyline. @pre spacing and line_stiffness are finite and above 0, the other options not
   /// negative; meshes are whole (is_whole), edges name faces of their part
   ExactBody(std::span<const Part> parts, const BodyOptions& options);
+  ExactBody() = default;  ///< of nothing: body_bytes.hpp fills it
 
   /// True if at least one face has a precise surface.
   [[nodiscard]] bool has_precise_faces() const { return precise_face_count > 0; }

@@ -13,8 +13,8 @@ Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d&
   return twist.linear + twist.angular.cross(p_W - body.p_WC);
 }
 
-RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, double dt, double margin, double size,
-                               bool mover_is_second, const SearchThresholds& thresholds) {
+RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, double dt, double margin,
+                               double overlap, double size, bool mover_is_second, const SearchThresholds& thresholds) {
   RelativeMotion motion;
   const Pose X_BM = base.X_WB.inverse() * mover.X_WB;
   motion.R = X_BM.rotation.toRotationMatrix();
@@ -32,6 +32,7 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   motion.dt = dt;
   motion.margin = margin;
   motion.size = size;
+  motion.overlap = overlap;
   motion.mover_is_second = mover_is_second;
   motion.thresholds = thresholds;
   return motion;
@@ -59,17 +60,18 @@ ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<con
   stack_.reserve(2 * kDepthMax);
 }
 
-void ExactLink::find(const BodyMotion& first, const BodyMotion& second, double dt, double margin) {
+void ExactLink::find(const BodyMotion& first, const BodyMotion& second, double dt, double margin, double overlap) {
   rows_.clear();
   cost_ = {};
   depth_max_ = 0;
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(!(margin < 0));  // of a run that diverges it may be no number at all
+  VERISIM_ASSERT(!(overlap < 0));
   if (!is_finite(first) || !is_finite(second)) return;
   VERISIM_ASSERT(is_unit(first.X_WB.rotation));
   VERISIM_ASSERT(is_unit(second.X_WB.rotation));
-  const RelativeMotion of_second = relative_motion(second, first, dt, margin, size_, true, thresholds_);
-  const RelativeMotion of_first = relative_motion(first, second, dt, margin, size_, false, thresholds_);
+  const RelativeMotion of_second = relative_motion(second, first, dt, margin, overlap, size_, true, thresholds_);
+  const RelativeMotion of_first = relative_motion(first, second, dt, margin, overlap, size_, false, thresholds_);
   const double a = search(*second_, *first_, of_second, stack_, rows_, cost_);
   const double b = search(*first_, *second_, of_first, stack_, rows_, cost_);
   depth_max_ = std::max(a, b);

@@ -104,8 +104,10 @@ class ExactLink {
   /// The order of rows is that of features and faces, whatever the poses.
   /// @param dt      s, the step
   /// @param margin  m, largest gap that makes a row; include the distance that the bodies can close within the step
-  /// @pre dt is finite and above 0; margin >= 0; rotations are unit, if finite
-  void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin);
+  /// @param overlap  m, by which their contacts were pressed in the last step: a place flush with an edge that is so
+  ///        deep has come through the face
+  /// @pre dt is finite and above 0; margin >= 0; overlap >= 0; rotations are unit, if finite
+  void find(const BodyMotion& first, const BodyMotion& second, double dt, double margin, double overlap = 0);
 
   [[nodiscard]] const RowList& rows() const { return rows_; }
   void make_room() { rows_.make_room(); }                         ///< for more rows than the last find; between steps

@@ -17,6 +17,7 @@ struct RelativeMotion {
   double dt;         ///< s
   double margin;     ///< m, largest gap that makes a row
   double size;       ///< m, half the diagonal of the smaller body
+  double overlap;    ///< m, of the two bodies in the last step
   bool mover_is_second;
   SearchThresholds thresholds;
 };

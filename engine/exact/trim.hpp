@@ -50,7 +50,16 @@ class Trim {
   /// Where a point of the surface lies. About 10 ns.
   [[nodiscard]] Answer find(const AnalyticSurface& surface, const Vector3d& foot) const;
 
+  /// For engine/base/archive.hpp.
+  static void fields(auto& archive, Trim& self) {
+    for (auto* axis : {&self.a_, &self.b_}) archive(axis->from, axis->cell, axis->per_cell, axis->count, axis->around);
+    archive(self.cells_, self.first_edge_, self.edges_);
+  }
+
  private:
+  friend class verisim::ArchiveReader;
+  Trim() = default;
+
   struct Axis {
     double from = 0, cell = 1, per_cell = 1;
     int count = 1;

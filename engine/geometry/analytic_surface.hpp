@@ -82,6 +82,8 @@ struct Profile {
 template <typename OnAxis>
 [[nodiscard]] Profile profile_of(const Vector3d& p, const Vector3d& point, const Vector3d& axis, OnAxis on_axis);
 
+class ArchiveReader;
+
 /// The distance of one point from a face's surface and its gradient.
 struct SurfaceAt {
   double distance;  ///< positive outside of the material
@@ -129,7 +131,14 @@ class AnalyticSurface {
   /// Material is inside (pin, ball), not around (hole). Planes: false.
   [[nodiscard]] bool is_convex() const { return meridian_.kind != SurfaceKind::plane && side_ > 0; }
 
+  /// For engine/base/archive.hpp.
+  static void fields(auto& archive, AnalyticSurface& self) {
+    auto& [kind, radius, ring, cosine, sine, tangent] = self.meridian_;
+    archive(kind, radius, ring, cosine, sine, tangent, self.point_, self.axis_, self.x_axis_, self.y_axis_, self.side_);
+  }
+
  private:
+  friend class ArchiveReader;
   AnalyticSurface() = default;
   [[nodiscard]] Profile profile(const Vector3d& p) const {
     return profile_of(p, point_, axis_, [this] { return x_axis_; });

@@ -15,23 +15,14 @@
 #include <optional>
 
 #include "engine/base/error.hpp"
+#include "engine/base/own_file.hpp"
 
 extern char** environ;
 
 namespace verisim {
 namespace {
 
-std::string find_program() {
-  if (const char* named = std::getenv("VERISIM_CAD"); named != nullptr && *named != '\0') return named;
-  std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const std::filesystem::path& candidate : {folder / "verisim-cad", folder.parent_path() / "verisim-cad"}) {
-    if (std::filesystem::exists(candidate, ignored)) return candidate;
-  }
-  fail(ErrorKind::io,
-       "verisim-cad is not beside this program (in '{}'); build or install it there, or name it in VERISIM_CAD",
-       folder.string());
-}
+constexpr const char* kInstalled = "libexec/verisim";  // below the prefix of `cmake --install`
 
 /// A descriptor that is closed with its owner.
 class Descriptor {
@@ -161,10 +152,22 @@ class Exchange {
 
 }  // namespace
 
+std::string cad_program() {
+  if (const char* named = std::getenv("VERISIM_CAD"); named != nullptr && *named != '\0') return named;
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::path(own_file()).parent_path(), above = folder.parent_path();
+  for (const std::filesystem::path& place : {folder, above, above / kInstalled, above.parent_path() / kInstalled}) {
+    if (std::filesystem::exists(place / "verisim-cad", ignored)) return place / "verisim-cad";
+  }
+  fail(ErrorKind::io,
+       "verisim-cad is not beside this program (in '{}'); build or install it there, or name it in VERISIM_CAD",
+       folder.string());
+}
+
 Message ask_cad(const Message& request, const std::string& subject, double time_limit_s) {
   VERISIM_ASSERT(time_limit_s > 0);
   const std::string bytes = encode(request);
-  Process process(find_program());
+  Process process(cad_program());
   const std::optional<std::string> answer = Exchange(process, bytes).run(time_limit_s);
   if (!answer) {
     fail(ErrorKind::input,

@@ -10,8 +10,11 @@ namespace verisim {
 
 inline constexpr double kCadTimeLimit = 120;  ///< s; the largest model known to load takes a tenth of it
 
+/// Its path: the environment variable VERISIM_CAD, or beside the program or library that holds this code, or one folder
+/// above, or where `cmake --install` puts it. Error(io) if there is none.
+[[nodiscard]] std::string cad_program();
+
 /// Starts verisim-cad, sends the request and returns its answer. `subject` (a file's path) begins the error texts.
-/// verisim-cad is looked for in the environment variable VERISIM_CAD, beside the running program and one folder above.
 /// Leaves no process and no descriptor behind. About 15 ms for starting the program.
 ///
 /// Errors: what the program reports, with its kind; Error(input) if it crashes or passes the time limit; Error(io) if

@@ -127,6 +127,12 @@ Handle file_access() {
   return list;
 }
 
+Handle reader_access() {
+  Handle list = file_access();
+  check_status(H5Pset_fclose_degree(list, H5F_CLOSE_DEFAULT), "access");
+  return list;
+}
+
 Handle writer_access() {
   Handle list = file_access();
   H5AC_cache_config_t cache;

@@ -76,6 +76,9 @@ using Shape = std::vector<hsize_t>;
 /// some 5 kB, depends on each other under SWMR, and HDF5 1.10 fails once it throws a part of that out (thousands of
 /// datasets; "Child entry doesn't have a flush dependency parent array").
 [[nodiscard]] Handle writer_access();
+/// The same for files that stay open while others may read them in this process: h5py closes as HDF5's default says,
+/// and two that have a file open at a time have to agree.
+[[nodiscard]] Handle reader_access();
 [[nodiscard]] Handle file_creation();  ///< property list: no times, links in order of creation
 [[nodiscard]] Handle link_creation();  ///< property list: creates the groups on the way
 [[nodiscard]] Handle open_group(hid_t location, const std::string& path);

@@ -35,8 +35,10 @@ std::size_t ring_rows(const RecorderOptions& options, std::size_t row_bytes) {
 //
 // A row carries the table's counter at its end: the table's rows become the writer's with the row that they belong to.
 //
-// Free-running, the loop rings once every half of what may be unsafe, and waits for `progress_` where it must. Paced,
-// it makes no system call at all: the writer looks every 10 ms.
+// Free-running, the loop rings once every half of what may be unsafe, and waits for `progress_` where it must. What the
+// writer takes at once ends at the same rows however fast it is (but where another ring is full), for where a file
+// has its chunks hangs on that: the same run is the same bytes. Paced, the loop makes no system call at all: the writer
+// looks every 10 ms.
 struct Recorder::Implementation {
   Implementation(const std::string& path, const Schema& schema, const RunHeader& header, const RecorderOptions& options)
       : options_(options),
@@ -46,7 +48,7 @@ struct Recorder::Implementation {
         unsafe_max_(std::clamp<std::size_t>(options.frames_unflushed, 1, ring_)),
         batch_(std::max<std::size_t>(1, unsafe_max_ / 2)),
         rows_buffer_(ring_ * row_bytes_),
-        table_end_(ring_),
+        ends_(ring_),
         events_buffer_(kEventRing),
         pairs_buffer_(kPairRing),
         path_(path),
@@ -85,7 +87,7 @@ struct Recorder::Implementation {
   void end_row() {
     VERISIM_ASSERT(row_open_);
     row_open_ = false;
-    table_end_[rows_.mine() % ring_] = table_.mine();
+    ends_[rows_.mine() % ring_] = {table_.mine(), events_.mine(), pairs_.mine()};
     const std::uint64_t count = rows_.mine() + 1;
     rows_.put.store(count, std::memory_order_release);
     // The first row at once: from then on the file has its name.
@@ -106,7 +108,7 @@ struct Recorder::Implementation {
 
   void pair(BodyPair pair) {
     VERISIM_ASSERT(!row_open_);
-    wait_until([&] { return pairs_.unsafe() < kPairRing; }, false);
+    wait_until([&] { return pairs_.unsafe() < kPairRing; }, true);
     pairs_buffer_[pairs_.mine() % kPairRing] = pair;
     pairs_.put.store(pairs_.mine() + 1, std::memory_order_release);
   }
@@ -149,10 +151,13 @@ struct Recorder::Implementation {
 
   const RecorderOptions options_;
   const std::size_t row_bytes_, table_row_bytes_, ring_, unsafe_max_, batch_;
-  std::size_t table_size_ = 0;              ///< changes only while the writer has nothing to do
-  std::vector<std::byte> rows_buffer_;      //  (ring_, row_bytes_)
-  std::vector<std::byte> table_buffer_;     //  (table_size_, table_row_bytes_)
-  std::vector<std::uint64_t> table_end_;    //  (ring_)
+  std::size_t table_size_ = 0;           ///< changes only while the writer has nothing to do
+  std::vector<std::byte> rows_buffer_;   //  (ring_, row_bytes_)
+  std::vector<std::byte> table_buffer_;  //  (table_size_, table_row_bytes_)
+  struct Ends {
+    std::uint64_t table, events, pairs;  ///< the loop's counters when the row was put
+  };
+  std::vector<Ends> ends_;                  //  (ring_)
   std::vector<StoredEvent> events_buffer_;  //  (kEventRing)
   std::vector<BodyPair> pairs_buffer_;      //  (kPairRing)
   const std::string path_;
@@ -218,7 +223,7 @@ struct Recorder::Implementation {
   // Free-running, the loop waits for room: what a file holds must not depend on the disk.
   bool fits(const Counters& ring, std::size_t size, std::size_t count) {
     const auto has_room = [&] { return ring.unsafe() + count <= size; };
-    if (!options_.paced) wait_until(has_room, false);
+    if (!options_.paced) wait_until(has_room, true);
     throw_if_failed();
     return has_room();
   }
@@ -253,25 +258,33 @@ struct Recorder::Implementation {
     }
   }
 
-  // A flush costs the same for one row as for fifty.
-  bool worth_a_flush() const {
-    const std::uint64_t waiting = rows_.unsafe();
-    const bool first = rows_.safe.load(std::memory_order_relaxed) == 0 && waiting > 0;
-    return options_.paced || hurry_.load(std::memory_order_acquire) || waiting >= batch_ || first ||
-           2 * table_.unsafe() >= std::max<std::size_t>(1, table_size_) || 2 * events_.unsafe() >= kEventRing ||
-           2 * pairs_.unsafe() >= kPairRing;
+  /// Where what the writer takes at once ends, free-running: behind the first row, then behind whole batches.
+  [[nodiscard]] std::uint64_t end_of_batch(std::uint64_t from) const {
+    return from == 0 ? 1 : (from / batch_ + 1) * batch_;
   }
 
-  // Writes and flushes what waits, at most kRowsAtOnce rows. False if there was nothing.
+  // A flush costs the same for one row as for fifty.
+  [[nodiscard]] bool worth_a_flush() const {
+    const bool batch_is_there =
+        rows_.put.load(std::memory_order_acquire) >= end_of_batch(rows_.safe.load(std::memory_order_relaxed));
+    return options_.paced || hurry_.load(std::memory_order_acquire) || batch_is_there;
+  }
+
+  // Writes and flushes what waits, at most a batch, or paced kRowsAtOnce rows. False if there was nothing.
   bool write_waiting() {
     const std::uint64_t rows_from = rows_.safe.load(std::memory_order_relaxed);
-    const std::uint64_t rows_to = std::min(rows_.put.load(std::memory_order_acquire), rows_from + kRowsAtOnce);
+    const std::uint64_t rows_put = rows_.put.load(std::memory_order_acquire);
+    const std::uint64_t batch_to = options_.paced ? rows_from + kRowsAtOnce : end_of_batch(rows_from);
+    const std::uint64_t rows_to = std::min(rows_put, batch_to);
+    const bool is_batch = !options_.paced && rows_to == batch_to;
     const std::uint64_t table_from = table_.safe.load(std::memory_order_relaxed);
-    const std::uint64_t table_to = rows_to > rows_from ? table_end_[(rows_to - 1) % ring_] : table_from;
+    const std::uint64_t table_to = rows_to > rows_from ? ends_[(rows_to - 1) % ring_].table : table_from;
     const std::uint64_t events_from = events_.safe.load(std::memory_order_relaxed);
-    const std::uint64_t events_to = events_.put.load(std::memory_order_acquire);
+    const std::uint64_t events_to = is_batch ? std::max(events_from, ends_[(rows_to - 1) % ring_].events)
+                                             : events_.put.load(std::memory_order_acquire);
     const std::uint64_t pairs_from = pairs_.safe.load(std::memory_order_relaxed);
-    const std::uint64_t pairs_to = pairs_.put.load(std::memory_order_acquire);
+    const std::uint64_t pairs_to = is_batch ? std::max(pairs_from, ends_[(rows_to - 1) % ring_].pairs)
+                                            : pairs_.put.load(std::memory_order_acquire);
     if (rows_from == rows_to && events_from == events_to && pairs_from == pairs_to) return false;
     writer_.reserve(rows_to - rows_from, table_to - table_from, events_to - events_from, pairs_to - pairs_from);
     in_pieces(pairs_from, pairs_to, kPairRing,

@@ -58,7 +58,7 @@ struct RunFile::Implementation {
   void open() {
     const std::string from = copy ? copy->path() : path;
     check_text_heaps(from);
-    file = Handle(check(H5Fopen(from.c_str(), H5F_ACC_RDONLY, hdf5::file_access()), path.c_str()), H5Fclose);
+    file = Handle(check(H5Fopen(from.c_str(), H5F_ACC_RDONLY, hdf5::reader_access()), path.c_str()), H5Fclose);
     check_objects(file, std::filesystem::file_size(from), SoftLinks::refused);
     check_is_run(path, file);
     header.attributes = hdf5::read_attributes(file);

@@ -10,10 +10,10 @@ file(MAKE_DIRECTORY ${folder})
 run(${AR} x ${ARCHIVE})
 file(REMOVE ${folder}/ltable-c++.o)
 
-# The C library's functions, wherever they are called.
+# The C library's functions and streams, wherever they are called.
 set(called)
 foreach(name acos asin atan atan2 cos cosh exp fmod log log10 memchr memcmp memcpy pow sin sinh strchr strcoll strlen
-             strpbrk strtod strtoul tan tanh)
+             stderr stdin stdout strpbrk strtod strtoul tan tanh)
   list(APPEND called --redefine-sym ${name}=verisim_lua_${name})
 endforeach()
 list(APPEND called --redefine-sym __sprintf_chk=verisim_lua_sprintf_chk)

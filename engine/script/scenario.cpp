@@ -9,16 +9,34 @@ struct Scenario::Implementation {
   script::ScriptState state;
 };
 
-Scenario::Scenario(const ScenarioOptions& options, Inputs& inputs)
-    : implementation_(std::make_unique<Implementation>(options, inputs)) {
-  script::ScriptState& state = implementation_->state;
+namespace {
+
+/// Why the script ended; nothing: at its end.
+std::optional<script::LuaFailure> run_script(script::ScriptState& state, Inputs& inputs, std::uint64_t limit) {
   lua_State* L = state.lua();
   const std::string& content = inputs.read(state.name());
-  state.allow(options.instruction_limit);
+  state.allow(limit);
   auto failure = state.load(L, state.name(), content);
   if (!failure) failure = state.call(L, 0, 0);
+  return failure;
+}
+
+}  // namespace
+
+Scenario::Scenario(const ScenarioOptions& options, Inputs& inputs)
+    : implementation_(std::make_unique<Implementation>(options, inputs)) {
+  auto failure = run_script(implementation_->state, inputs, options.instruction_limit);
+  if (const std::optional<script::PrecisionChoice> choice = implementation_->state.precision) {
+    ScenarioOptions chosen = options;
+    chosen.ignores_precision = true;
+    chosen.sets.insert(chosen.sets.end(), choice->sets.begin(), choice->sets.end());
+    implementation_ = std::make_unique<Implementation>(chosen, inputs);
+    implementation_->state.event("precision", choice->event);
+    for (const std::string& notice : choice->notices) implementation_->state.notice(notice);
+    failure = run_script(implementation_->state, inputs, options.instruction_limit);
+  }
   if (failure) throw Error(ErrorKind::input, failure->text);
-  state.finish();
+  implementation_->state.finish();
 }
 
 Scenario::~Scenario() = default;
@@ -38,6 +56,9 @@ std::string Scenario::parameters_json() const {
 }
 const std::string& Scenario::outcome() const {
   return implementation_->state.outcome;
+}
+double Scenario::outcome_since() const {
+  return implementation_->state.outcome_since;
 }
 bool Scenario::finished() const {
   return implementation_->state.finished;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,8 +23,12 @@ struct ScenarioOptions {
   std::vector<std::pair<std::string, std::string>> binds;  ///< --bind NAME=SOURCE
   std::optional<std::uint64_t> seed;                       ///< --seed, --duration win over the script
   std::optional<double> duration;
+  double step_scale = 1;  ///< the time step is so much of what the script says: a finer run of the same, as a reference
+  bool ignores_precision = false;  ///< precision = "auto" chooses nothing: settings are tried one by one
   std::size_t memory_limit = std::size_t{256} << 20;  ///< bytes of Lua memory
   std::uint64_t instruction_limit = 200'000'000;      ///< while building; and per script frame 10'000'000
+  std::function<void(const std::string&)> print{};    ///< receives what the script prints; empty: stderr does
+  std::function<void(const std::string&)> warn{};     ///< receives failures of its actions; empty: stderr does
 };
 
 class Scenario {
@@ -41,6 +46,7 @@ class Scenario {
 
   [[nodiscard]] std::string parameters_json() const;  ///< all params{} as resolved
   [[nodiscard]] const std::string& outcome() const;   ///< outcome("…"); empty if none was said
+  [[nodiscard]] double outcome_since() const;         ///< simulated time at which it became that [s]
   [[nodiscard]] bool finished() const;  ///< the script asked to stop (outcome with stop, simulation:stop())
   [[nodiscard]] const std::vector<Measure>& measures() const;
   [[nodiscard]] std::vector<std::string> notices() const;  ///< warnings and ignored options, each once

@@ -78,6 +78,7 @@ void ScriptState::finish() {
   if (options.seed) scene.parameters.seed = *options.seed;
   if (options.duration) scene.parameters.duration = options.duration;
   name_devices(devices);
+  scene.parameters.timestep *= options.step_scale;
   bind_devices();
   for (const DevicePointer& device : devices) scene.devices.push_back(make_device(*device, scene.parameters.seed));
   finish_companions();
@@ -216,12 +217,19 @@ void ScriptState::event(const std::string& kind, const std::string& whole_text) 
 
 void ScriptState::report_failure(const std::string& what, const LuaFailure& failure) {
   event("script error", fmt::format("{} ({})", failure.text, what));
-  std::fprintf(stderr, "%s: %s (%s; the simulation goes on)\n", "warning", shown(failure.text).c_str(), what.c_str());
+  const std::string text = fmt::format("{} ({}; the simulation goes on)", failure.text, what);
+  if (options.warn)
+    options.warn(text);
+  else
+    std::fprintf(stderr, "warning: %s\n", shown(text).c_str());
 }
 
 void ScriptState::print(const std::string& line) {
   event("print", line);
-  std::fprintf(stderr, "%s\n", shown_lines(line).c_str());
+  if (options.print)
+    options.print(line);
+  else
+    std::fprintf(stderr, "%s\n", shown_lines(line).c_str());
 }
 
 double ScriptState::random() {

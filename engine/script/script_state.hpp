@@ -16,6 +16,8 @@
 #include "engine/script/companion_node.hpp"
 #include "engine/script/device_node.hpp"
 #include "engine/script/frame_actions.hpp"
+#include "engine/script/parameters.hpp"
+#include "engine/script/precision.hpp"
 #include "engine/script/sandbox.hpp"
 #include "engine/script/scenario.hpp"
 #include "engine/simulation/declaring.hpp"
@@ -108,8 +110,14 @@ class ScriptState : public Sandbox {
   std::optional<std::string> parameters_place;  ///< FILE:LINE of params{}
   std::string parameters_json = "{}";
   std::vector<std::string> parameter_names;
+  std::vector<ParameterDeclaration> parameters;  ///< in the same order
+  bool parameters_only = false;                  ///< the script ends at params{}
+  bool parameters_known = false;                 ///< it came through params{}
+
+  std::optional<PrecisionChoice> precision;  ///< what precision = "auto" chose: the script has to be run again with it
 
   std::string outcome;
+  double outcome_since = 0;  ///< simulated time at which that was first said [s]
   bool finished = false;
   std::vector<Measure> measures;
   std::vector<std::string> notices;
@@ -120,9 +128,10 @@ class ScriptState : public Sandbox {
   void add_companion(lua_State* L, std::shared_ptr<CompanionNode> node);
   /// Index in scene.devices of the chain that `node` is part of. Error(input) if it was never added.
   [[nodiscard]] std::size_t device_index(const DeviceNode& node) const;
+  /// Error(input) if --set names something and the script declares no parameters.
+  void check_sets() const;
 
  private:
-  void check_sets() const;
   void bind_devices();
   [[nodiscard]] bool bind_companion(const std::string& wanted, const std::string& source);
   void finish_companions();
@@ -144,8 +153,11 @@ auto at_place(const std::string& place, const Make& make) {
   }
 }
 
+/// What --set key=text makes of a declared parameter, as JSON. Error(input). @pre no script runs; work is allowed
+[[nodiscard]] std::string read_set_value(ScriptState& state, const std::string& key, const std::string& text);
+
 // The words, by subject: words_*.cpp.
-void add_parameter_words(lua_State* L);   ///< params, mm, deg, outcome, measure
+void add_parameter_words(lua_State* L);   ///< params, parameter, mm, deg, outcome, measure
 void add_scene_words(lua_State* L);       ///< defineSimulationParameters, addObject
 void add_node_words(lua_State* L);        ///< Model, modelParts, Transform, Group, MatrixTransform, Solid
 void add_body_words(lua_State* L);        ///< what addObject returns

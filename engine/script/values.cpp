@@ -32,6 +32,11 @@ std::string described(lua_State* L, int index) {
   return std::string("a ") + luaL_typename(L, index);
 }
 
+int refuse_assignment(lua_State* L) {
+  raise(L, "{}'s '{}' cannot be set", described(L, 1),
+        lua_type(L, 2) == LUA_TSTRING ? text_at(L, 2, "a member") : described(L, 2));
+}
+
 double number_at(lua_State* L, int index, const std::string& what) {
   if (lua_type(L, index) != LUA_TNUMBER) raise(L, "{} must be a number, not {}", what, described(L, index));
   const double value = lua_tonumber(L, index);

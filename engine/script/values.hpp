@@ -106,6 +106,9 @@ T* get_if(lua_State* L, int index) {
   return same ? detail::aligned<T>(block) : nullptr;
 }
 
+/// __newindex of what a script can only read: raises, with the type and the member.
+int refuse_assignment(lua_State* L);
+
 /// osg.Matrix of a placement, and the placement in a matrix (scales taken out). words_matrix.cpp.
 void push_matrix_of(lua_State* L, const Pose& pose);
 [[nodiscard]] Pose pose_of_matrix(lua_State* L, const Matrix& matrix, const std::string& what);

@@ -212,6 +212,7 @@ void add_body_words(lua_State* L) {
   lua_pop(L, 1);
   push_metatable<Pose>(L);
   set_function<pose_member, Charge::call>(L, "__index");
+  set_function<refuse_assignment, Charge::call>(L, "__newindex");
   lua_pop(L, 1);
 }
 

@@ -251,6 +251,7 @@ int device_text(lua_State* L) {
 void add_device_words(lua_State* L) {
   push_metatable<DevicePointer>(L);
   set_function<device_member, Charge::call>(L, "__index");
+  set_function<refuse_assignment, Charge::call>(L, "__newindex");
   set_function<device_text, Charge::call>(L, "__tostring");
   lua_pop(L, 1);
   lua_newtable(L);

@@ -1,4 +1,5 @@
-// params{ clearance = 0.005, … }: what --set may change. And the small words: mm, deg, outcome, measure.
+// params{ clearance = 0.005, … }: what --set may change; parameter(0.005, "m", "on the radius") in it says more. And
+// the small words: mm, deg, outcome, measure.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -28,6 +29,16 @@ class ParameterRoom {
   std::size_t taken_ = 0;
 };
 
+constexpr const char* kParameterKey = "verisim.parameter";  // of what parameter() gives
+
+bool is_declared_parameter(lua_State* L, int index) {
+  if (lua_type(L, index) != LUA_TTABLE || lua_getmetatable(L, index) == 0) return false;
+  lua_getfield(L, LUA_REGISTRYINDEX, kParameterKey);
+  const bool same = lua_rawequal(L, -1, -2) != 0;
+  lua_pop(L, 2);
+  return same;
+}
+
 nlohmann::json to_json(lua_State* L, ParameterRoom& room, int index, const std::string& what, int depth = 0) {
   room.take(L, 32);
   switch (lua_type(L, index)) {
@@ -47,6 +58,7 @@ nlohmann::json to_json(lua_State* L, ParameterRoom& room, int index, const std::
     default:
       raise(L, "{} must be a number, a text, true or false, or a list of these, not {}", what, described(L, index));
   }
+  if (is_declared_parameter(L, index)) raise(L, "{}: parameter(…) is a whole default, not part of one", what);
   if (depth == kNestingMax) raise(L, "{} is nested more than {} deep", what, kNestingMax);
   nlohmann::json list = nlohmann::json::array();
   const auto length = static_cast<int>(lua_objlen(L, index));
@@ -71,18 +83,25 @@ bool is_bare_word(const std::string& text) {
 }
 
 // Leaves the value of `--set key=text` on the stack. A text parameter takes its text as it stands, unless that is
-// quoted.
+// quoted; a number may have a unit.
 void push_set_value(lua_State* L, const std::string& key, const std::string& text, int default_type) {
   const bool quoted = !text.empty() && (text[0] == '"' || text[0] == '\'');
   if (default_type == LUA_TSTRING && !quoted) {
     push_text(L, text);
     return;
   }
+  if (default_type == LUA_TNUMBER) {
+    if (const std::optional<double> value = number_with_unit(text)) {
+      lua_pushnumber(L, *value);
+      return;
+    }
+  }
   Sandbox& sandbox = Sandbox::of(L);
   const std::string place = fmt::format("--set {}={}", key, text);
   if (const auto failure = sandbox.load(L, place, "return " + text)) {
     if (!is_bare_word(text))
-      raise_for_command_line(L, fmt::format("{}: this is no Lua expression; a number like 0.005 or mm(5) is", place));
+      raise_for_command_line(L,
+                             fmt::format("{}: this is no Lua expression; a number like 0.005, 5mm or mm(5) is", place));
     push_text(L, text);
     return;
   }
@@ -98,12 +117,61 @@ std::string names_hint(const ScriptState& state, const std::string& key) {
   return suggestion(key, state.parameter_names);
 }
 
-void check_names(lua_State* L, const ScriptState& state) {
-  for (const auto& [key, value] : state.options.sets) {
-    const auto& names = state.parameter_names;
-    if (std::find(names.begin(), names.end(), key) == names.end())
-      raise_for_command_line(L, fmt::format("--set {}={}: {} has no parameter '{}'{}", key, value, state.name(), key,
-                                            names_hint(state, key)));
+void check_name(lua_State* L, const ScriptState& state, const std::string& key, const std::string& value) {
+  const auto& names = state.parameter_names;
+  if (std::find(names.begin(), names.end(), key) == names.end())
+    raise_for_command_line(L, fmt::format("--set {}={}: {} has no parameter '{}'{}", key, value, state.name(), key,
+                                          names_hint(state, key)));
+}
+
+// Leaves the value of `--set key=text` on the stack: of the type of the parameter's default.
+void push_checked_value(lua_State* L, const ScriptState& state, const std::string& key, const std::string& text,
+                        int type) {
+  push_set_value(L, key, text, type);
+  if (lua_type(L, -1) != type)
+    raise_for_command_line(L, fmt::format("--set {}={}: '{}' must be a {}, as its default at {} is, not {}", key, text,
+                                          key, lua_typename(L, type), *state.parameters_place, described(L, -1)));
+}
+
+// parameter(0.005, "m", "on the radius"): a default that says its unit and what it means, for params{} alone.
+int declare_one(lua_State* L) {
+  if (lua_isnoneornil(L, 1))
+    raise(L, "parameter: its default is nothing; write parameter(0.005, \"m\", \"on the radius\")");
+  const std::string unit = lua_isnoneornil(L, 2) ? "" : name_at(L, 2, "parameter: the unit");
+  const std::string meaning = lua_isnoneornil(L, 3) ? "" : name_at(L, 3, "parameter: the meaning");
+  lua_settop(L, 1);
+  lua_newtable(L);
+  lua_pushvalue(L, 1);
+  lua_setfield(L, -2, "default");
+  push_text(L, unit);
+  lua_setfield(L, -2, "unit");
+  push_text(L, meaning);
+  lua_setfield(L, -2, "meaning");
+  lua_getfield(L, LUA_REGISTRYINDEX, kParameterKey);
+  lua_setmetatable(L, -2);
+  return 1;
+}
+
+std::string text_of_field(lua_State* L, int index, const char* name) {
+  lua_getfield(L, index, name);
+  std::string text = any_text_at(L, lua_gettop(L), fmt::format("parameter: {}", name));
+  lua_pop(L, 1);
+  return text;
+}
+
+// Puts the defaults in the places of what parameter() gave. The table of defaults is at index 2.
+void take_declarations(lua_State* L, ScriptState& state) {
+  for (const std::string& name : state.parameter_names) {
+    ParameterDeclaration declared{.name = name, .type = {}, .value_json = {}, .unit = {}, .meaning = {}};
+    lua_getfield(L, 2, name.c_str());
+    if (is_declared_parameter(L, lua_gettop(L))) {
+      declared.unit = text_of_field(L, lua_gettop(L), "unit");
+      declared.meaning = text_of_field(L, lua_gettop(L), "meaning");
+      lua_getfield(L, -1, "default");
+      lua_setfield(L, 2, name.c_str());
+    }
+    lua_pop(L, 1);
+    state.parameters.push_back(std::move(declared));
   }
 }
 
@@ -121,29 +189,46 @@ int declare_parameters(lua_State* L) {
     state.parameter_names.push_back(name_at(L, -2, "params: the name of an entry"));
   }
   std::sort(state.parameter_names.begin(), state.parameter_names.end());
-  check_names(L, state);
+  take_declarations(L, state);
+  for (const auto& [key, value] : state.options.sets) check_name(L, state, key, value);
   for (const auto& [key, value] : state.options.sets) {
     lua_getfield(L, 2, key.c_str());
-    const int type = lua_type(L, -1);
-    push_set_value(L, key, value, type);
-    if (lua_type(L, -1) != type)
-      raise_for_command_line(
-          L, fmt::format("--set {}={}: '{}' must be a {}, as its default at {} is, not {}", key, value, key,
-                         lua_typename(L, type), *state.parameters_place, described(L, -1)));
+    push_checked_value(L, state, key, value, lua_type(L, -1));
     lua_setfield(L, 2, key.c_str());
     lua_pop(L, 1);
   }
   ParameterRoom room;
   nlohmann::json json = nlohmann::json::object();
-  for (const std::string& name : state.parameter_names) {
+  for (ParameterDeclaration& declared : state.parameters) {
+    const std::string& name = declared.name;
     lua_getfield(L, 2, name.c_str());
     json[name] = to_json(L, room, lua_gettop(L), "params: " + name);
+    declared.type = lua_typename(L, lua_type(L, -1));
+    declared.value_json = json[name].dump();
     lua_pushvalue(L, -1);
     lua_setfield(L, 1, name.c_str());
     lua_pop(L, 1);
   }
   state.parameters_json = json.dump();
+  state.parameters_known = true;
+  if (state.parameters_only) raise_for_command_line(L, "the parameters are known: the script ends here");
   lua_settop(L, 1);
+  return 1;
+}
+
+// (key, text) -> the value as JSON. For C++ alone.
+int set_value_as_json(lua_State* L) {
+  const ScriptState& state = ScriptState::of(L);
+  const std::string key = any_text_at(L, 1, "the key"), text = any_text_at(L, 2, "the value");
+  check_name(L, state, key, text);
+  const auto declared = std::find_if(state.parameters.begin(), state.parameters.end(),
+                                     [&](const ParameterDeclaration& p) { return p.name == key; });
+  int type = LUA_TNUMBER;
+  for (const int known : {LUA_TSTRING, LUA_TBOOLEAN, LUA_TTABLE})
+    if (declared->type == lua_typename(L, known)) type = known;
+  push_checked_value(L, state, key, text, type);
+  ParameterRoom room;
+  push_text(L, to_json(L, room, lua_gettop(L), fmt::format("--set {}", key)).dump());
   return 1;
 }
 
@@ -174,8 +259,10 @@ int say_outcome(lua_State* L) {
     if (stop) state.stop();
   }
   Sandbox::charge(L, state.outcome != said ? kEventWork : 1);
-  if (state.outcome != said) state.event("outcome", said);
+  if (state.outcome == said) return 0;
+  state.event("outcome", said);
   state.outcome = said;
+  state.outcome_since = state.time();
   return 0;
 }
 
@@ -210,7 +297,23 @@ int say_event(lua_State* L) {
 
 }  // namespace
 
+std::string read_set_value(ScriptState& state, const std::string& key, const std::string& text) {
+  lua_State* L = state.lua();
+  push_function<set_value_as_json, Charge::call>(L);
+  push_text(L, key);
+  push_text(L, text);
+  if (const auto failure = state.call(L, 2, 1)) throw Error(ErrorKind::input, failure->text);
+  std::string json = lua_tostring(L, -1);
+  lua_pop(L, 1);
+  return json;
+}
+
 void add_parameter_words(lua_State* L) {
+  lua_newtable(L);
+  lua_pushstring(L, "parameter");
+  lua_setfield(L, -2, "__metatable");
+  lua_setfield(L, LUA_REGISTRYINDEX, kParameterKey);
+  set_global<declare_one, Charge::call>(L, "parameter");
   lua_newtable(L);
   lua_newtable(L);
   set_function<declare_parameters, Charge::call>(L, "__call");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/contract.hpp"
+#include "engine/base/hash.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 
@@ -55,6 +56,41 @@ void accept_without_effect(lua_State* L, Fields& fields, std::initializer_list<c
       ScriptState::of(L).notice(fmt::format("{}: {} is accepted and changes nothing", where(L), name));
 }
 
+// precision = "auto": a setting of the dials that keeps the bounds. What the script has read of params{} by now is of
+// other values, so it is run again from its beginning, with what was chosen (Scenario::Scenario).
+void read_precision(lua_State* L, Fields& fields) {
+  ScriptState& state = ScriptState::of(L);
+  PrecisionRequest request;
+  request.table = fields.text("precisionTable").value_or(request.table);
+  request.budget = fields.text("budget");
+  request.error = fields.text("error");
+  request.by = fields.text("errorBy");
+  bool is_auto = false;
+  if (fields.push("precision")) {
+    is_auto = lua_type(L, -1) == LUA_TSTRING && text_at(L, -1, "precision") == "auto";
+    lua_pop(L, 1);
+    if (!is_auto) accept_without_effect(L, fields, {"precision"});
+  }
+  if (!is_auto && (request.budget || request.error || request.by))
+    raise(L, "budget, error and errorBy are bounds of precision = \"auto\"; say that too");
+  if (!is_auto || state.options.ignores_precision) return;
+  request.scenario = state.name();
+  request.scenario_sha256 = sha256(state.inputs.read(state.name()));
+  request.parameters_json = state.parameters_json;
+  request.sets = state.options.sets;
+  if (!state.inputs.exists(request.table))
+    raise(L,
+          "precision is 'auto' and there is no {}; make it: verisim tradeoff {} --vary KEY=V1,V2 --repeat 19 -o {}, "
+          "its own folder",
+          request.table, request.scenario, "FOLDER");
+  try {
+    state.precision = choose_precision(request, state.read_file(L, request.table));
+  } catch (const Error& error) {
+    raise(L, "{}", error.what());
+  }
+  raise(L, "precision: the script is run again with what was chosen");
+}
+
 int define_simulation_parameters(lua_State* L) {
   ScriptState& state = ScriptState::of(L);
   if (state.simulation != nullptr)
@@ -97,7 +133,8 @@ int define_simulation_parameters(lua_State* L) {
   p.restitution_speed = fields.positive("restitutionSpeed").value_or(p.restitution_speed);
   p.passive_contacts = fields.boolean("passiveContacts").value_or(p.passive_contacts);
   state.scene.grasp_distance = fields.positive("graspDistance").value_or(state.scene.grasp_distance);
-  accept_without_effect(L, fields, {"limitCouplerDampingForce", "precision", "parts"});
+  accept_without_effect(L, fields, {"limitCouplerDampingForce", "parts"});
+  read_precision(L, fields);
   fields.finish(false);
   return 0;
 }

@@ -139,6 +139,7 @@ int head_text(lua_State* L) {
 void add_wii_words(lua_State* L) {
   push_metatable<HeadPointer>(L);
   set_function<head_member, Charge::call>(L, "__index");
+  set_function<refuse_assignment, Charge::call>(L, "__newindex");
   set_function<head_text, Charge::call>(L, "__tostring");
   lua_pop(L, 1);
   set_global<wii_head, Charge::call>(L, "WiiHead");

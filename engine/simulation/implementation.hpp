@@ -15,7 +15,7 @@ struct Simulation::Implementation {
   Implementation(Scene scene, const SimulationOptions& options)
       : world(make_world(scene, events)),
         stages(scene, world),
-        maker(std::move(scene.bodies), options.threads),
+        maker(std::move(scene.bodies), options.threads, options.store),
         recording(world, stages, cost) {
     notes.make_room(world, 0);
     maker.begin(world);

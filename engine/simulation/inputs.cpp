@@ -6,6 +6,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
 #include "engine/base/user_file.hpp"
+#include "engine/geometry/message.hpp"
 
 namespace verisim {
 namespace {
@@ -51,8 +52,9 @@ std::string options_key(const LoadOptions& o) {
 
 }  // namespace
 
-Inputs Inputs::live(const std::string& folder, std::vector<std::string> named) {
+Inputs Inputs::live(const std::string& folder, std::vector<std::string> named, std::shared_ptr<PreparedStore> store) {
   Inputs inputs;
+  inputs.store_ = std::move(store);
   std::error_code lost;  // the working directory: whole paths of the command line are still good
   (void)fs::current_path(lost);
   if (!lost || fs::path(folder).is_absolute()) inputs.folder_ = from_root(folder.empty() ? "." : folder).string();
@@ -120,12 +122,28 @@ const std::vector<Part>& Inputs::remember(const std::string& key, std::vector<Pa
   return parts_[key] = std::move(parts);
 }
 
+std::vector<Part> Inputs::prepared(const std::string& key, const std::function<std::vector<Part>()>& make) {
+  constexpr const char* kKind = "parts";
+  if (!store_) return make();
+  std::vector<Part> parts;
+  if (const std::optional<std::string> bytes = store_->find(kKind, key)) {
+    for (const Group& group : decode(*bytes)) parts.push_back(from_tables(group.name, group.tables));
+    return parts;
+  }
+  parts = make();
+  Message message;
+  for (const Part& part : parts) message.push_back({part.name, to_tables(part)});
+  store_->keep(kKind, key, encode(message));
+  return parts;
+}
+
 const std::vector<Part>& Inputs::model(const std::string& name, const LoadOptions& options) {
   const std::string key = name + " " + options_key(options);
   const auto known = parts_.find(key);
   if (known != parts_.end()) return known->second;
   if (!live_) fail(ErrorKind::input, "{}: is not among the run file's models; the run was recorded without it", name);
-  return remember(key, load_model(name, read(name), options));
+  const std::string& content = read(name);
+  return remember(key, prepared(key + " " + sha256(content), [&] { return load_model(name, content, options); }));
 }
 
 const Part& Inputs::solid(const Solid& solid, const LoadOptions& options) {
@@ -134,9 +152,8 @@ const Part& Inputs::solid(const Solid& solid, const LoadOptions& options) {
   if (known != parts_.end()) return known->second.front();
   if (!live_)
     fail(ErrorKind::input, "{}: is not among the run file's solids; the run was recorded without it", solid.text());
-  std::vector<Part> parts;
-  parts.push_back(load_solid(solid, options));
-  return remember(key, std::move(parts)).front();
+  const auto make = [&] { return std::vector<Part>{load_solid(solid, options)}; };
+  return remember(key, prepared(key, make)).front();
 }
 
 std::vector<InputFile> Inputs::files() const {

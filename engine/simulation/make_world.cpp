@@ -47,6 +47,8 @@ void check(const SimulationParameters& p) {
   positive(p.contact_stiffness, "contactStiffness", "N/m");
   if (!std::isfinite(p.contact_damping_ratio) || p.contact_damping_ratio < 0)
     fail(ErrorKind::input, "contactDampingRatio is {} but must be finite and not negative", p.contact_damping_ratio);
+  if (!std::isfinite(p.coupling_damping_ratio) || p.coupling_damping_ratio < 0)
+    fail(ErrorKind::input, "couplingDampingRatio is {} but must be finite and not negative", p.coupling_damping_ratio);
   positive(p.exact_stiffness, "exactStiffness", "N/m^2");
   if (!is_fraction(p.restitution)) fail(ErrorKind::input, "restitution is {} but must be from 0 to 1", p.restitution);
   if (!is_fraction(p.exact_friction))
@@ -167,8 +169,9 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.can_move = can_move(scene, index);
   for (const Part& part : description.parts)
     for (const Vector3d& v : part.mesh.vertices) body.bounds_B.include(v);
-  const CouplingLimits limits{p.max_stiffness, p.max_angular_stiffness, p.max_coupling_force, p.max_coupling_torque};
-  body.coupling = make_coupling(body.rigid, world.dt, limits, !world.is_implicit());
+  const CouplingLimits limits{p.max_stiffness, p.max_angular_stiffness, p.max_coupling_force, p.max_coupling_torque,
+                              p.coupling_damping_ratio};
+  body.coupling = make_coupling(body.rigid, world.dt, limits, !world.is_implicit() && p.stability_rule);
   return body;
 }
 

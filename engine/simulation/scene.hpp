@@ -43,6 +43,10 @@ struct SimulationParameters {
   double max_angular_stiffness = 0.1;                                    ///< N m/rad
   double max_coupling_force = std::numeric_limits<double>::infinity();   ///< N
   double max_coupling_torque = std::numeric_limits<double>::infinity();  ///< N m
+  double coupling_damping_ratio = 1;  ///< of the critical damping of the virtual coupling
+  /// The rule that keeps explicit couplings and contacts within their stability budget. False: they have the stiffness
+  /// asked for, whatever comes of it. For those who look for the bound itself (engine/stability); no word of scenarios.
+  bool stability_rule = true;
   bool all_bodies_are_dynamic = false;  ///< false: bodies that no device holds do not move
   double contact_stiffness = 10000;     ///< N/m per contact, before the stability rule (contact/penalty.hpp)
   double contact_damping_ratio = 0.5;   ///< of the critical damping of the contact stiffness in force

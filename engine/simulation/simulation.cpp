@@ -155,6 +155,7 @@ void Simulation::set_body_pose(std::size_t index, const Pose& X_WB) {
     fail(ErrorKind::input, "'{}' is fixed: nothing but a moving body can be put elsewhere", body.name);
   body.rigid.set_pose(X_WB);
   body.rigid.v_C = body.rigid.omega = Vector3d::Zero();
+  implementation_->stages.exact.forget(implementation_->world, index);
   implementation_->poses_set = true;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/pose.hpp"
+#include "engine/record/prepared_store.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/simulation/frame_cost.hpp"
 #include "engine/simulation/scene.hpp"
@@ -21,6 +22,8 @@ namespace verisim {
 
 struct SimulationOptions {
   unsigned threads = 1;
+  /// Voxels and exact bodies that are there are taken from it; null: all are made here. Same bits.
+  std::shared_ptr<PreparedStore> store = nullptr;
 };
 
 /// The stages of a frame in their order, as /timing/stage_ns counts them.

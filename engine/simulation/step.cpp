@@ -51,12 +51,12 @@ void Simulation::step() {
   timer.done(Stage::query);
   s.response.respond(world, s.contacts, s.methods, cost);  // penalty of every contact, summed in pair order
   timer.done(Stage::response);
-  s.exact.solve(world, s.neighbours, s.methods, s.response, cost);
+  s.exact.solve(world, s.neighbours, s.methods, s.response, cost, notes);
   s.passivity.bound(world, s.contacts, s.methods, s.response, s.exact, s.energy.ledger());
   s.motion.advance(world, s.response, s.exact, s.passivity, s.energy.ledger());
   s.reactions.find(world, s.contacts, s.response, s.exact, s.motion);
   s.tunnelling.watch(world, notes);
-  s.sinking.watch(world, s.contacts, s.reactions, notes);
+  s.sinking.watch(world, s.contacts, s.exact, s.reactions, notes);
   s.pair_energy.watch(world, s.contacts, s.exact, s.reactions, s.motion, notes);
   timer.done(Stage::motion);
   // coupling wrench -> what the hardware is told to render

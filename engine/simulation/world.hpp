@@ -58,7 +58,7 @@ struct Link {
   std::size_t number = kNone;  ///< in the order of first meetings; kNone: made in advance. Simulation::prepare
 };
 
-/// A device and what it holds. stages/grasping writes it; the collisions stages/rendering.
+/// A device and what it holds. stages/grasping writes it; from `collisions` on stages/rendering.
 struct Hand {
   std::shared_ptr<Device> device;
   std::size_t body = kNone;
@@ -68,6 +68,7 @@ struct Hand {
   std::uint32_t collisions = 0;   ///< contacts of the body that it holds
   bool collision_starts = false;  ///< in the same frame
   CollisionStart detector;
+  Vector3d ahead = Vector3d::Zero();  ///< rad, by which it is turned ahead of the body (CouplingForce::e)
 };
 
 struct World {

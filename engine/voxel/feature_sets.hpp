@@ -51,6 +51,11 @@ class FeatureSets {
   [[nodiscard]] std::size_t size() const { return begin_.size() - 1; }
   [[nodiscard]] std::size_t memory_bytes() const;
 
+  /// For engine/base/archive.hpp. Equal parts of bodies with other names are equal: the owner is not told.
+  static void fields(auto& archive, FeatureSets& self) {
+    archive(self.most_, self.begin_, self.entities_, self.table_);
+  }
+
  private:
   [[nodiscard]] std::size_t place_of(std::span<const EntityNumber> entities) const;
   void grow();

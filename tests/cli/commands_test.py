@@ -27,7 +27,7 @@ def lose_the_right_to_priority():
     ctypes.CDLL(None).prctl(PR_CAPBSET_DROP, CAP_SYS_NICE, 0, 0, 0)
 
 
-COMMANDS = ["run", "replay", "recover", "inspect", "trace", "doctor"]
+COMMANDS = ["run", "batch", "replay", "recover", "inspect", "compare", "trace", "doctor"]
 
 
 class Commands(ProgramTest):
@@ -35,6 +35,7 @@ class Commands(ProgramTest):
         for command in COMMANDS:
             text = self.succeed(command, "--help").stdout
             self.assertTrue("Example:" in text or command == "trace", command)
+        self.assertIn("Example:", self.succeed("batch", "merge", "--help").stdout)
         for command in ["info", "convert", "synth"]:
             self.assertIn("Example:", self.succeed("trace", command, "--help").stdout)
 

@@ -102,6 +102,28 @@ class Devices(ProgramTest):
                 self.assertLessEqual(numpy.linalg.norm(apart[-1] - apart[0]), 1e-3)
                 self.assertLessEqual(numpy.linalg.norm(numpy.diff(box[-100:, :3], axis=0), axis=1).max(), 1e-6)
 
+    def test_a_button_that_is_stuck_or_chatters(self):
+        free = self.path("free.lua")
+        with open(free, "w") as f:
+            f.write("""addObject{ name = "wall", fixed = true, voxelsize = 0.02, position = {0.3, 0, 0}, Solid.box{0.1, 1, 1} }
+                addObject{ name = "box", voxelsize = 0.02, Solid.box{0.1, 0.1, 0.1} }
+                addDevice(Devices.Replay{ name = "hand", trace = "hand.csv" })""")
+        for name, down, held in (("down", lambda i: 1, True), ("up", lambda i: 0, False),
+                                 ("chatters", lambda i: i % 2, True), ("lets go", lambda i: i < 20, True)):
+            with self.subTest(name), open(self.path("hand.csv"), "w") as f:
+                f.write("# verisim-trace 1\n# kind: haptic\n# rate_hz: 100\n# source: a test\nt,px,py,pz,qx,qy,qz,qw,button\n")
+                f.writelines("%g,%g,0,0,0,0,0,1,%d\n" % (0.01 * i, 0.005 * i, down(i)) for i in range(101))
+                f.close()
+                self.succeed("run", free, "--quiet", "-o", "free.h5", "--force")
+                with h5py.File(self.path("free.h5")) as run:
+                    box = run["state/body/box/pose"][:, :3]
+                    said = [e["text"].decode() for e in run["events"] if e["kind"] == b"button"]
+                self.assertEqual([text.split(":")[0] for text in said],
+                                 [f"hand has a button that is {name} in every sample"] if name in ("down", "up") else [])
+                self.assertEqual(numpy.abs(box).max() > 0.05, held)
+                self.assertTrue((box[:, 0] < 0.21).all())  # the wall stands at 0.25 m; the hand goes on to 0.5
+                self.assertLess(numpy.linalg.norm(numpy.diff(box, axis=0), axis=1).max() / 1e-3, 2)
+
     def test_a_bubble_that_stops_in_collision_goes_no_farther(self):
         ends = [self.run_reach(*self.hold(), "--set", "stop=" + stop)[0]["bubble_center"][:, 0].max() for stop in ("false", "true")]
         self.assertGreater(ends[0], ends[1] + 0.05)

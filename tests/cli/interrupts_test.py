@@ -36,6 +36,15 @@ class Interrupts(ProgramTest):
             self.assertIsNone(process.poll(), "ended by itself")
             time.sleep(0.002)
 
+    def wait_until_caught(self, number, process):
+        """On a busy machine a program may take long to come to its first line."""
+        def caught():
+            with open(f"/proc/{process.pid}/status") as f:
+                mask = next(line.split()[1] for line in f if line.startswith("SigCgt:"))
+            return int(mask, 16) >> (number - 1) & 1
+        while process.poll() is None and not caught():
+            time.sleep(0.002)
+
     def test_a_run_closes_its_file(self):
         for number in SIGNALS:
             for pace in ([], ["--realtime"]):
@@ -58,6 +67,7 @@ class Interrupts(ProgramTest):
         for number, command in [(n, c) for c in commands for n in (SIGNALS if c[0] == "replay" else SIGNALS[:1])]:
             with self.subTest(command=command, signal=number.name):
                 process = self.start(*command)
+                self.wait_until_caught(number, process)
                 time.sleep(0.15)
                 self.assertIsNone(process.poll(), "is not long: this would prove nothing")
                 self.interrupt(process, number)

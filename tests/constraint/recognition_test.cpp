@@ -1,5 +1,6 @@
 // Which pairs are recognized, just inside and just outside each tolerance, in both orders.
 #include "engine/constraint/recognition.hpp"
+#include "engine/constraint/restoration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -100,6 +101,18 @@ TEST(Recognition, FindsPlanesAndWhatLiesOnThem) {
   EXPECT_EQ(kind(plane(kZ), cylinder(0.02, kHole)), ConstraintKind::none);
   EXPECT_EQ(kind(plane(kZ), line(Vector3d::UnitX())), ConstraintKind::other);
   EXPECT_EQ(kind(plane(kZ), plane(-kZ)), ConstraintKind::planar);
+}
+
+// What lies on a plate feels the plate's normal, whichever of the two bodies has the voxmap; of equal planes A's.
+TEST(Recognition, LetsTheLargerOfTwoPlanesGiveTheNormal) {
+  const Entity large = plane(kZ, kOrigin, 0.1), small = plane(-kZ, kOrigin, 0.02);
+  EXPECT_EQ(kind(large, small), ConstraintKind::planar);
+  EXPECT_EQ(recognize(large, small).normal_source, Side::a);
+  EXPECT_EQ(recognize(small, large).normal_source, Side::b);
+  const Pose tilted{Vector3d::Zero(), Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitX()))};  // B in A
+  EXPECT_EQ(activate(recognize(large, small), tilted, 1).direction, -kZ);
+  EXPECT_EQ(activate(recognize(small, large), tilted, 1).direction, tilted.rotation * kZ);
+  EXPECT_EQ(activate(recognize(large, plane(-kZ, kOrigin, 0.1)), tilted, 1).direction, -kZ);
 }
 
 // half_angle_difference_max = 0.00873 rad; flanks of 0.04 m at 0.3 rad span +-6.2 mm of radius.

@@ -156,5 +156,15 @@ TEST(Replay, SaysThatItsTraceJumpsAndThatItEnds) {
   }
 }
 
+TEST(Replay, SaysThatItsButtonIsStuck) {
+  const auto with = [](std::vector<std::uint8_t> button) {
+    return make_replay("trace", {{0, 1, 2}, {{}, {}, {}}, std::move(button)});
+  };
+  for (const std::uint8_t down : {0, 1})
+    EXPECT_EQ(said_by(*with({down, down, down}), 1000), std::vector<std::string>{"0 button"});
+  EXPECT_EQ(said_by(*with({0, 0, 1}), 1000), std::vector<std::string>{});
+  EXPECT_EQ(said_by(*with({}), 1000), std::vector<std::string>{}) << "no button was recorded: it holds throughout";
+}
+
 }  // namespace
 }  // namespace verisim::replay_test

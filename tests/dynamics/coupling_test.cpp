@@ -40,6 +40,24 @@ TEST(Coupling, IsCriticallyDamped) {
   EXPECT_LE((c.angular_damping_B - Matrix3d(B.asDiagonal())).norm(), tolerance(32 * 0x1p-52));
 }
 
+// A ratio scales both dampers, and what they use of the stability budget: x^2 + 4 zeta x of at most 2.
+TEST(Coupling, IsDampedByTheRatioAskedFor) {
+  const RigidBody body = brick(2, {1, 2, 3});
+  const Coupling critical = make_coupling(body, 1e-3, {300, 0.1}, true);
+  for (const double zeta : {0.0, 0.25, 2.0}) {
+    CouplingLimits limits{300, 0.1};
+    limits.damping_ratio = zeta;
+    const Coupling c = make_coupling(body, 1e-3, limits, true);
+    EXPECT_EQ(c.damping, zeta * critical.damping);
+    EXPECT_EQ(c.angular_damping_B, zeta * critical.angular_damping_B);
+    limits.stiffness_max = 1e9;
+    const Coupling limited = make_coupling(body, 1e-3, limits, true);
+    const double x = 1e-3 * std::sqrt(limited.stiffness / body.mass);
+    EXPECT_LE(std::abs(x * x + 4 * zeta * x - kCouplingBudget), tolerance(1e-12));
+    EXPECT_LE(std::abs(limited.budget_used - kCouplingBudget), tolerance(1e-12));
+  }
+}
+
 // Released at rest 10 mm from its target, a critically damped body follows d0 (1 + w t) e^(-w t). Both integrators are
 // of first order: their error is bounded by a constant times w dt d0, here 1e-2 d0 * 0.5 (0.37 is the largest slope in
 // w t).

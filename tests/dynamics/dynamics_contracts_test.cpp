@@ -57,6 +57,7 @@ TEST(CouplingDeathTest, NeedsAStepAMassAndLimits) {
   EXPECT_BROKEN(with(&CouplingLimits::angular_stiffness_max, -1), "is_not_negative(limits.angular_stiffness_max)");
   EXPECT_BROKEN(with(&CouplingLimits::force_max, 0), "limits.force_max > 0");
   EXPECT_BROKEN(with(&CouplingLimits::torque_max, kNaN), "limits.torque_max > 0");
+  EXPECT_BROKEN(with(&CouplingLimits::damping_ratio, -1), "is_not_negative(limits.damping_ratio)");
 }
 
 TEST(CouplingDeathTest, PullsTowardsARotation) {

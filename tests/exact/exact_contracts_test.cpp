@@ -65,6 +65,7 @@ TEST(ExactLinkDeathTest, LooksAStepAheadFromTwoPlacements) {
   BodyMotion still;
   EXPECT_BROKEN(link.find(still, still, 0, 0.01), "is_positive(dt)");
   EXPECT_BROKEN(link.find(still, still, kStep, -0.01), "!(margin < 0)");
+  EXPECT_BROKEN(link.find(still, still, kStep, 0.01, -0.01), "!(overlap < 0)");
   BodyMotion stretched;
   stretched.X_WB.rotation = Quaterniond(2, 0, 0, 0);
   EXPECT_BROKEN(link.find(stretched, still, kStep, 0.01), "is_unit(first.X_WB.rotation)");

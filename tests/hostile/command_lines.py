@@ -19,7 +19,7 @@ SECONDS = 60
 PATIENCE = 3  # s, before Ctrl-C
 COMMANDS = [[], ["run"], ["run"], ["run"], ["replay"], ["recover"], ["inspect"], ["trace"], ["trace", "info"], ["trace", "convert"],
             ["trace", "synth"], ["wii"], ["wii", "validate"], ["wii", "place"], ["wii", "track"], ["wii", "serve"],
-            ["wii", "listen"], ["reproduce"], ["doctor"]]
+            ["wii", "listen"], ["reproduce"], ["compare"], ["doctor"], ["batch"], ["batch"], ["batch", "merge"]]
 FILES = ["scene.lua", "hand.csv", "wii.csv", "part.stl", "run.h5", "notes.txt", "folder", "loop", "no_such_file"]
 VALUES = ["", " ", "-", "--", "-1", "0", "1", "2", "256", "257", "0.01", "1e-300", "1e300", "-0", "nan", "inf", "18446744073709551615",
           "18446744073709551616", "0x10", "1e3", "x", "a=b", "=", "duration=0.01", "speed=1e9", "word='a\nb'", "voxelsize=0/0",
@@ -30,6 +30,9 @@ VALUES = ["", " ", "-", "--", "-1", "0", "1", "2", "256", "257", "0.01", "1e-300
           "WiiMote0@localhost:1", "0 0 0", "43", "localhost", "0.0.0.0", "R1"]
 
 USUAL = {"run": ["scene.lua"], "replay": ["run.h5"], "recover": ["run.h5"], "inspect": ["part.stl", "part.step"],
+         "batch": ["scene.lua"], "compare": ["run.h5"], "merge": ["pins", "folder"], "--vary": ["speed=0.1,0.2", "word=a,b"], "--random": ["2", "speed=0.1..0.2"],
+         "--design": ["design.csv"], "--repeat": ["2"], "--shard": ["1/2"], "--keep": ["all", "failed"], "--time-limit": ["20"],
+         "--memory-limit": ["1000"], "--jobs": ["1", "2"],
          "info": ["hand.csv", "wii.csv"], "convert": ["hand.csv"], "synth": ["insertion", "sine"], "track": ["wii.csv"],
          "listen": ["WiiMote0@localhost:1"], "--duration": ["0.01", "0.02"], "--seed": ["5"], "--threads": ["2"],
          "--simd": ["scalar"], "-o": ["out.h5", "out.csv", "hand.csv", "notes.txt", "scene.lua"], "--out": ["out.h5", "out.csv", "run.h5"],
@@ -52,7 +55,8 @@ def inputs():
         licence = f.read()
     scene = SMALL.replace("duration = 0.3", "duration = 0.02")
     return {"scene.lua": scene.encode(), "hand.csv": as_csv("haptic").encode(), "wii.csv": as_csv("wii").encode(),
-            "part.stl": turned_stl(0.0, 5.0, 10.0, 12).encode(), "notes.txt": licence}
+            "part.stl": turned_stl(0.0, 5.0, 10.0, 12).encode(), "notes.txt": licence,
+            "design.csv": b"speed,seed\n0.1,1\n0.2,2\n"}
 
 
 INPUTS = inputs()

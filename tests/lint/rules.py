@@ -28,9 +28,16 @@ MAY_INCLUDE = {
     "wii": "base",
     "vrpn": "base",
     "record": "base",
+    "batch": "base record",
     "reproduce": "base geometry record voxel constraint wii device",
+    "compare": "base record",
     "simulation": "base geometry voxel contact constraint exact dynamics device robot record",
-    "script": "base geometry device robot wii record simulation",
+    "stability": "base geometry device simulation",
+    "tradeoff": "base",
+    "script": "base geometry device robot wii record simulation tradeoff",
+    "session": "base geometry record script simulation",
+    "api": "base record session",
+    "python": "api",
 }
 
 # Each library has one home (path prefixes), so that a change of library is a change of one folder. A header that no
@@ -47,17 +54,25 @@ HOME_OF_LIBRARY = {
     r"hwy/(highway|foreach_target)\.h": ["engine/contact/", "engine/constraint/restore_batch.cpp",
                                          "engine/exact/block_kernels.cpp"],
     r"CLI/CLI\.hpp": ["engine/cli/"],
-    r"nlohmann/json\.hpp": ["engine/script/", "engine/cli/"],
+    r"nlohmann/json\.hpp": ["engine/script/", "engine/session/", "engine/cli/", "engine/batch/", "engine/compare/",
+                             "engine/tradeoff/"],
+    r"sqlite3\.h": ["engine/batch/"],
+    r"boost/math/(distributions|special_functions)/\w+\.hpp": ["engine/compare/", "engine/batch/"],
     r"sleef\.h|xxhash\.h|openssl/sha\.h": ["engine/base/"],
     # The operating system's. Sockets: a network is vrpn's alone; the CAD child process is spoken to through a pair.
     r"(netinet/(in|tcp)|arpa/inet|netdb)\.h": ["engine/vrpn/socket.cpp"],
     r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp"],
-    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp"],
+    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp", "engine/batch/"],
     r"(unistd|fcntl|sys/(stat|mman|resource))\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp",
-                                                    "engine/geometry/cad/", "engine/record/", "engine/cli/",
-                                                    "engine/base/user_file.cpp", "engine/base/standard_streams.cpp"],
-    r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/"],
-    r"(pthread|sched|sys/utsname)\.h": ["engine/cli/"],
+                                                    "engine/geometry/cad/", "engine/record/", "engine/cli/", "engine/session/",
+                                                    "engine/base/user_file.cpp", "engine/base/standard_streams.cpp",
+                                                    "engine/batch/workers.cpp"],
+    r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/", "engine/batch/workers.cpp",
+                                     "engine/cli/program_runs.cpp"],
+    r"link\.h": ["engine/base/own_file.cpp"],
+    r"pybind11/\w+\.h": ["engine/python/"],
+    r"verisim/\w+\.hpp": ["engine/api/", "engine/python/"],
+    r"(pthread|sched|sys/utsname|elf)\.h": ["engine/cli/", "engine/session/", "engine/batch/workers.cpp"],
 }
 
 # What a folder's CMakeLists.txt may link besides the project's own: the libraries above, by the names CMake knows.
@@ -66,7 +81,9 @@ HOME_OF_LINKED = {
     "Eigen3::Eigen": ["engine/base"], "fmt::fmt": ["engine/base"], "sleef": ["engine/base"],
     "OpenSSL::Crypto": ["engine/base"], "CGAL::CGAL": ["engine/geometry"],
     "hwy::hwy": ["engine/contact", "engine/constraint", "engine/exact"], "fcl": ["engine/contact"],
-    "${HDF5_C_LIBRARIES}": ["engine/record"], "nlohmann_json::nlohmann_json": ["engine/script", "engine/cli"],
+    "${HDF5_C_LIBRARIES}": ["engine/record"], "nlohmann_json::nlohmann_json": ["engine/script", "engine/session", "engine/cli", "engine/batch", "engine/compare",
+                                                                           "engine/tradeoff"],
+    "SQLite::SQLite3": ["engine/batch"],
     "CLI11::CLI11": ["engine/cli"], "assimp::assimp": ["engine/geometry/cad"],
     "${VERISIM_OCCT_TOOLKITS}": ["engine/geometry/cad"],
 }
@@ -77,10 +94,12 @@ MAY_READ_THE_CLOCK = {
     "engine/reproduce/r5_blending.cpp": "times a solution of the comparator",
     "engine/wii/validate.cpp": "times a tracker's update",
     "engine/record/recorder.cpp": "waits for the disk",
+    "engine/record/prepared_store.cpp": "which entries were used longest ago",
     "engine/geometry/cad_client.cpp": "ends a child process that takes too long",
+    "engine/batch/workers.cpp": "ends a run that takes too long, and tells how long each took",
     "engine/cli/doctor.cpp": "measures the clock itself",
-    "engine/cli/stop_watch.hpp": "tells how long something took",
-    "engine/cli/run_loop.cpp": "paces a run and times its frames",
+    "engine/session/stop_watch.hpp": "tells how long something took",
+    "engine/session/run_loop.cpp": "paces a run and times its frames",
     "engine/cli/wire_clock.cpp": "dates messages",
 }
 
@@ -94,6 +113,7 @@ MAY_CALL_THE_C_LIBRARY = {
 
 MAY_OPEN_FILES = {
     "engine/base/user_file.cpp": "the place where files that a user names are opened for reading",
+    "engine/record/prepared_store.cpp": "its own files in a folder of its own; what is read passes through UserFile",
     "engine/base/standard_streams.cpp": "occupies numbers of descriptors",
     "engine/record/file_replace.cpp": "writes and marks; opens nothing that could make it wait",
     "engine/record/heap_check.cpp": "maps run files that read_superblock has opened before",
@@ -104,7 +124,11 @@ MAY_OPEN_FILES = {
     "engine/record/trace_hdf5.cpp": "HDF5, of bytes in memory and of files that it makes",
     "engine/geometry/write_file.cpp": "writes the models that scenarios ship",
     "engine/geometry/cad/step_file.cpp": "the kernel's readers, of files in memory",
-    "engine/cli/origin.cpp": "reads /proc/cpuinfo",
+    "engine/session/origin.cpp": "reads /proc/cpuinfo",
+    "engine/batch/folder.cpp": "sees whether the folder of a batch is empty",
+    "engine/batch/workers.cpp": "/dev/null, as what a worker has of stdin and stdout",
+    "engine/compare/history.cpp": "lists the folder that --history names",
+    "engine/cli/program_runs.cpp": "a folder and files of its own for the outputs of the programs that it starts",
 }
 
 KEPT_FOR_TESTS = {  # functions of the engine's headers that nothing in the engine calls
@@ -209,7 +233,7 @@ def libraries_away_from_home(files):
 def links_against_the_dependency_rule(lists):
     """`lists`: {path of a CMakeLists.txt: text}. What a folder links is what it may include."""
     lists = {path: re.sub(r"#.*", "", text) for path, text in lists.items()}
-    call = r"\b(add_library|add_executable|target_link_libraries)\s*\(([^)]*)\)"
+    call = r"\b(add_library|add_executable|pybind11_add_module|target_link_libraries)\s*\(([^)]*)\)"
     commands = [(posixpath.dirname(path), command, arguments.split())
                 for path, text in lists.items() for command, arguments in re.findall(call, text)]
     owner = {arguments[0]: folder for folder, command, arguments in commands if command != "target_link_libraries"}

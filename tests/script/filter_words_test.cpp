@@ -143,7 +143,12 @@ TEST(Filters, RefuseWhatIsNone) {
        "there is a device 'omni' already"},
       {"addDevice(TrackedTransform{ TrackedTransform{ omni, tracker = 'a' }, tracker = 'a' })",
        "there is a device 'a' already"},
-      {"addDevice(omni) addDevice(bumpDevice{ omni })", "was added already"}};
+      {"addDevice(omni) addDevice(bumpDevice{ omni })", "was added already"},
+      // No chain bites its tail: what a filter wraps is there before it, and stays.
+      {"local f = bumpDevice{ omni } f.device = f", "a device's 'device' cannot be set"},
+      {"local f = bumpDevice{ omni } f[1] = f", "a device's '1' cannot be set"},
+      {"local f = bumpDevice{ f }", "bumpDevice: the device must be a device, not nothing"},
+      {"omni.device = bumpDevice{ omni }", "a device's 'device' cannot be set"}};
   for (const auto& [script, text] : cases)
     EXPECT_NE(refusal(script).find(text), std::string::npos) << script << ": " << refusal(script);
 }

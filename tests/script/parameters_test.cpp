@@ -1,6 +1,10 @@
 // params{} and --set, and the small words around them.
 #include <gtest/gtest.h>
 
+#include <tuple>
+
+#include "engine/base/pinned_math.hpp"
+#include "engine/script/parameters.hpp"
 #include "tests/script/written_scenario.hpp"
 
 namespace verisim::parameters_test {
@@ -80,6 +84,75 @@ TEST(Parameters, ThatAreReadUnderAWrongNameSuggestTheRightOne) {
 TEST(Units, AreMetresAndRadians) {
   EXPECT_EQ(refusal_of("assert(mm(3) == 0.003) assert(math.abs(deg(180) - math.pi) < 1e-15)"), "");
   EXPECT_EQ(refusal_of("mm('3')"), "pin.lua:1: mm: the length must be a number, not a text ('3')");
+}
+
+TEST(Units, OfTheCommandLineAreThoseOfTheWords) {
+  EXPECT_EQ(number_with_unit("5mm"), 5 / 1000.0);
+  EXPECT_EQ(number_with_unit("0.5 deg"), 0.5 * (pinned::kPi / 180));
+  EXPECT_EQ(number_with_unit("200us"), 200 / 1e6);
+  EXPECT_EQ(number_with_unit("200µs"), 200 / 1e6);
+  EXPECT_EQ(number_with_unit("1.5kN"), 1500.0);
+  EXPECT_EQ(number_with_unit("-3e-2m"), -0.03);
+  EXPECT_EQ(number_with_unit("+2kg"), 2.0);
+  EXPECT_EQ(number_with_unit("20g"), 0.02);
+  EXPECT_EQ(number_with_unit("3mg"), 3 / 1e6);
+  EXPECT_EQ(number_with_unit("7cm"), 7 / 100.0);
+  EXPECT_EQ(number_with_unit("1rad"), 1.0);
+  for (const char* text :
+       {"", "5", "mm", "5 apples", "5mm2", "5mm+1", "5min", "inf m", "nan s", "1e999m", "5kdeg", "0x5m"})
+    EXPECT_EQ(number_with_unit(text), std::nullopt) << text;
+  EXPECT_EQ(resolved("{clearance = 0.005, word = ''}", {{"clearance", "3mm"}, {"word", "3mm"}}),
+            R"({"clearance":0.003,"word":"3mm"})");
+}
+
+TEST(Parameters, MaySayTheirUnitAndMeaning) {
+  EXPECT_EQ(resolved("{clearance = parameter(0.005, 'm', 'on the radius'), fit = parameter('H7'), half = true}",
+                     {{"clearance", "1mm"}}),
+            R"({"clearance":0.001,"fit":"H7","half":true})");
+  EXPECT_EQ(resolved("{a = parameter()}", {}),
+            R"(pin.lua:1: parameter: its default is nothing; write parameter(0.005, "m", "on the radius"))");
+  EXPECT_EQ(resolved("{a = {parameter(1, 'm')}}", {}),
+            "pin.lua:1: params: a[1]: parameter(…) is a whole default, not part of one");
+  EXPECT_EQ(resolved("{a = parameter(parameter(1))}", {}),
+            "pin.lua:1: params: a: parameter(…) is a whole default, not part of one");
+  EXPECT_NE(resolved("{a = parameter(1, {})}", {}).find("parameter: the unit"), std::string::npos);
+}
+
+TEST(DeclaredParameters, AreReadWithoutTheScene) {
+  WrittenScenario written(
+      "local p = params{b = 1, a = parameter(0.005, 'm', 'on the radius'), w = 'x', f = false} error('too far')");
+  written.options.sets = {{"b", "2"}};
+  Inputs inputs = Inputs::live(written.folder().string(), {});
+  DeclaredParameters parameters(written.options, inputs);
+  ASSERT_EQ(parameters.all().size(), 4u);
+  const ParameterDeclaration& a = parameters.all()[0];
+  EXPECT_EQ(a.name + a.type + a.value_json + a.unit + a.meaning, "anumber0.005mon the radius");
+  EXPECT_EQ(parameters.all()[1].value_json, "2.0");
+  EXPECT_EQ(parameters.value_of("a", "mm(3)"), "0.003");
+  EXPECT_EQ(parameters.value_of("a", "3mm"), "0.003");
+  EXPECT_EQ(parameters.value_of("w", "H7/g6"), R"("H7/g6")");
+  EXPECT_EQ(parameters.value_of("f", "true"), "true");
+  for (const auto& [key, text, words] : {std::tuple{"c", "1", "has no parameter 'c'"},
+                                         {"a", "fast", "must be a number"},
+                                         {"a", "1 +", "no Lua expression"},
+                                         {"f", "1", "must be a boolean"},
+                                         {"a", "(function() while true do end end)()", "units of work"}}) {
+    try {
+      (void)parameters.value_of(key, text);
+      ADD_FAILURE() << key << "=" << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(parameters.value_of("a", "1"), "1.0") << "what failed leaves nothing behind";
+}
+
+TEST(DeclaredParameters, OfAScriptWithoutAnyAreNone) {
+  WrittenScenario written("measure('x', 1)");
+  Inputs inputs = Inputs::live(written.folder().string(), {});
+  DeclaredParameters parameters(written.options, inputs);
+  EXPECT_TRUE(parameters.all().empty());
+  EXPECT_THROW((void)parameters.value_of("a", "1"), Error);
 }
 
 TEST(Measures, KeepTheLastValueOfEachName) {

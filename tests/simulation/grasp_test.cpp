@@ -73,5 +73,36 @@ TEST(Grasp, TheHeldBodyKeepsItsPlaceInTheHand) {
   EXPECT_LT((simulation.body_pose(0).position - Vector3d(0.4, 0.2, 0)).norm(), 1e-4);
 }
 
+// A hand that turns by 4 rad at 2 rad/s, and a coupling too weak to turn the body along: past half a turn the shorter
+// way is the other one.
+TEST(Grasp, SaysThatTheCouplingTurnsRoundAtHalfATurn) {
+  for (const double torque_max : {1e-6, 10.0}) {
+    Scene scene;
+    scene.parameters.duration = 2;
+    scene.parameters.max_coupling_torque = torque_max;
+    BodyDescription box = scenes::body_of("box", scenes::centred_box({0.1, 0.1, 0.1}), 0.01);
+    scene.bodies = {box};
+    HapticSamples samples;
+    for (int i = 0; i <= 20; ++i) {
+      samples.t.push_back(0.1 * i);
+      samples.pose.push_back({Vector3d::Zero(), rotation_from_vector({0.2 * i, 0, 0})});
+    }
+    scene.devices = {make_replay("hand", std::move(samples))};
+    scene.grasps = {{0, 0}};
+    Simulation simulation(std::move(scene), {});
+    while (simulation.frame() < simulation.frames_planned()) simulation.step();
+    std::vector<double> times;
+    for (const Event& event : simulation.events())
+      if (event.kind == "coupling") times.push_back(event.time);
+    if (torque_max == 10.0) {
+      EXPECT_TRUE(times.empty());
+      continue;
+    }
+    ASSERT_EQ(times.size(), 1U);
+    // The body turns by half of torque / inertia t^2, 0.04 rad, meanwhile.
+    EXPECT_NEAR(times[0], M_PI / 2, 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace verisim::grasp_test

@@ -1,5 +1,7 @@
 #include "engine/simulation/stages/exact_response.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
@@ -27,6 +29,30 @@ constexpr double kSticking = 1e-3;
 constexpr double kAcross = 1e-3;
 /// m/s: what friction would take from the lighter body in one step, for a blow's own friction to be solved for.
 constexpr double kCounts = 1e-4;
+
+/// Frames with rows and without a late one, after which a pair counts as one that touches: of what is not known to
+/// overlap, and of what did. Rows are those of features as near as a voxel: what is deeper comes to light as it moves
+/// out, not in every frame.
+constexpr std::uint32_t kTouches = 10, kCalm = 100;
+
+/// m/s: what a body may get from roundings in a step and nobody is told.
+constexpr double kRounded = 1e-3;
+
+std::string text_of_rounding(const World& world, const Note& note) {
+  return fmt::format(
+      "'{}' weighs {:.3g} kg, too little for its stiff contacts with heavier bodies: the roundings of their forces "
+      "move "
+      "it, {:.2g} m/s in a step; lower exactStiffness (now {:.3g} N/m^2), use a smaller timestep or raise its density",
+      world.bodies[note.first].name, world.bodies[note.first].rigid.mass, note.a, world.parameters.exact_stiffness);
+}
+
+std::string text_of_overlap(const World& world, const Note& note) {
+  return fmt::format(
+      "'{}' and '{}' were put inside of each other, by {:.3g} mm or more: their contacts move them apart, {:g} m/s "
+      "fast "
+      "at most, and give no energy; put them apart",
+      world.bodies[note.first].name, world.bodies[note.second].name, 1e3 * note.a, exact::ConvexStep::kPushOut);
+}
 
 /// Bound of the velocity of any point of a body [m/s].
 double speed_of(const Body& body, const Vector6d& u) {
@@ -65,7 +91,7 @@ void ExactResponse::make_room() {
 }
 
 void ExactResponse::solve(const World& world, const Neighbours& neighbours, const PairMethods& methods,
-                          const Response& response, FrameCost& cost) {
+                          const Response& response, FrameCost& cost, Notes& notes) {
   if (!solver_) return;
   begin(world, response);
   find(world, neighbours, methods, cost);
@@ -76,6 +102,33 @@ void ExactResponse::solve(const World& world, const Neighbours& neighbours, cons
   list_islands(world);
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     if (bodies_[i].solved && island_[i] == i) solve_island(world, i, cost);
+  tell(world, notes);
+}
+
+void ExactResponse::forget(const World& world, std::size_t body) {
+  for (std::size_t l = 0; l < links_.size(); ++l)
+    if (world.links[l].first == body || world.links[l].second == body) links_[l].calm = 0;
+}
+
+void ExactResponse::tell(const World& world, Notes& notes) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    OfBody& of = bodies_[i];
+    if (of.told || !of.solved || !(of.rounded > kRounded)) continue;
+    of.told = true;
+    notes.add({.time = world.time(), .kind = "rounding", .text = text_of_rounding, .first = i, .a = of.rounded});
+  }
+  for (const std::size_t l : world.near_links) {
+    OfLink& of = links_[l];
+    if (of.told || !of.late) continue;
+    of.told = true;
+    const auto [first, second, number] = world.links[l];
+    notes.add({.time = world.time(),
+               .kind = "overlap",
+               .text = text_of_overlap,
+               .first = first,
+               .second = second,
+               .a = of.depth_max});
+  }
 }
 
 /// Bodies and links of each island, in their order: chains that begin at the island's first body.
@@ -106,6 +159,7 @@ void ExactResponse::begin(const World& world, const Response& response) {
     of.wrench = {};
     of.shift_moment = Vector3d::Zero();
     of.contacts = 0;
+    of.rounded = 0;
     if (!world.bodies[i].exact || !world.moves(world.bodies[i])) continue;
     of.step = begin_implicit(world.bodies[i].rigid, response.loads(i), world.dt);
     of.velocity = of.step.free;
@@ -137,12 +191,7 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
   expect_blows(world, methods);
   for (const std::size_t l : world.near_links) {
     OfLink& of = links_[l];
-    const OfLink last = of;
-    of = {};
-    if (last.found_in != kNone && last.found_in + 1 == world.frame) {
-      of.overlap = last.overlap;
-      of.pressing = last.pressing;
-    }
+    begin_frame(world, of);
     exact::ExactLink* search = methods.acting(l) != nullptr ? methods.acting(l)->precise() : nullptr;
     if (search == nullptr) continue;
     const Link& link = world.links[l];
@@ -150,15 +199,28 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
     const Body& second = world.bodies[link.second];
     // The boxes know where bodies are, not how fast: a contact is to be there before the bodies overlap.
     const double reach = closing(world, link);
+    const std::uint32_t calm = std::exchange(of.calm, kCalm);  // but for what is not apart
     if (!(gap(neighbours.box(link.first), neighbours.box(link.second)) <= reach)) continue;
     bodies_[link.first].solved = bodies_[link.first].solved || world.moves(first);
     bodies_[link.second].solved = bodies_[link.second].solved || world.moves(second);
     of.searched = true;
     if (are_apart(placed(world, link.first), placed(world, link.second), reach)) continue;
+    of.calm = calm;
     find(world, l, *search, reach);
     cost.exact_samples += search->cost().samples;
     cost.rows_left_out += search->rows().left_out();
   }
+}
+
+/// What is known of a link from the frame before.
+void ExactResponse::begin_frame(const World& world, OfLink& of) const {
+  const OfLink last = of;
+  of = {};
+  of.calm = last.calm;
+  of.told = last.told;
+  if (last.found_in == kNone || last.found_in + 1 != world.frame) return;
+  of.overlap = last.overlap;
+  of.pressing = last.pressing;
 }
 
 /// Where the box around a body is in this frame.
@@ -189,7 +251,7 @@ void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& se
     motion.last_twist = {rigid.v_C, rigid.omega};
     return motion;
   };
-  search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing);
+  search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing, links_[l].overlap);
   links_[l].search = &search;
   links_[l].found_in = world.frame;
   links_[l].depth_max = search.depth_max();
@@ -209,7 +271,8 @@ void ExactResponse::solve_problem(const World& world, std::size_t island, FrameC
   const SimulationParameters& p = world.parameters;
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next)
     solver_->add_rows(links_[l].search->rows().rows(), bodies_[world.links[l].first].in_solver,
-                      bodies_[world.links[l].second].in_solver, {p.restitution, links_[l].overlap});
+                      bodies_[world.links[l].second].in_solver,
+                      {p.restitution, links_[l].overlap, links_[l].calm < kCalm});
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next) add_grip(world, l);
   cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt, p.restitution_speed));
 }
@@ -246,7 +309,9 @@ void ExactResponse::read_bodies(std::size_t island, double dt) {
     Vector6d impulse;
     impulse << dt * of.wrench.force, dt * of.wrench.torque;
     of.velocity_after = of.step.free + of.step.A.llt().solve(impulse);
-    if (!solver_->was_hit()) of.velocity = of.velocity_after;
+    if (solver_->was_hit()) continue;
+    of.rounded = (of.velocity_after - of.velocity).head<3>().norm();
+    of.velocity = of.velocity_after;
   }
 }
 
@@ -259,7 +324,9 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   of.overlap = 0;
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
-    if (!solver_->is_late(first_row + i)) of.overlap = std::max(of.overlap, -rows[i].gap);
+    const bool late = solver_->is_late(first_row + i);
+    of.late = of.late || (late && of.calm < kCalm);
+    if (!late) of.overlap = std::max(of.overlap, -rows[i].gap);
     // A row that pushed and is free after the rebound has no force left, but two opposite ones at two places.
     const Vector3d rebound = solver_->rebound(first_row + i) * rows[i].normal;
     of.on_second.torque += solver_->moved(first_row + i).cross(rebound);
@@ -268,6 +335,7 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
     const Vector3d f = force * rows[i].normal;
     of.on_second += {f, (rows[i].point - p_WC).cross(f)};
   }
+  if (of.calm < kCalm) of.calm = of.late ? 0 : of.calm + (of.told ? 1 : kCalm / kTouches);
   cost.contacts += of.acting;
   bodies_[world.links[l].first].contacts += of.acting;
   bodies_[world.links[l].second].contacts += of.acting;

@@ -1,5 +1,9 @@
 // Precise contacts, found and solved: every body that an exact pair can move is prepared without those contacts, then
 // each island of bodies that touch is one convex problem (engine/exact/convex_step.hpp).
+//
+// Bodies may begin inside of each other, or be put there. No motion brought them there, so there is no energy in it:
+// until they are apart, or touch as others do, their contacts move them apart with ConvexStep::kPushOut at most and
+// give them no velocity. An event of kind "overlap" names the pair.
 #pragma once
 
 #include <memory>
@@ -8,6 +12,7 @@
 #include "engine/exact/convex_step.hpp"
 #include "engine/exact/oriented_box.hpp"
 #include "engine/simulation/stages/neighbours.hpp"
+#include "engine/simulation/stages/notes.hpp"
 #include "engine/simulation/stages/response.hpp"
 
 namespace verisim {
@@ -21,7 +26,9 @@ class ExactResponse {
   void make_room();
 
   void solve(const World& world, const Neighbours& neighbours, const PairMethods& methods, const Response& response,
-             FrameCost& cost);
+             FrameCost& cost, Notes& notes);
+  /// A body was put elsewhere: what it touches there, no motion has brought about. Between frames.
+  void forget(const World& world, std::size_t body);
 
   /// Does the body move with velocity(), under wrench(), in this frame?
   [[nodiscard]] bool solved(std::size_t body) const { return bodies_[body].solved; }
@@ -39,6 +46,8 @@ class ExactResponse {
   [[nodiscard]] double depth_max(std::size_t link) const { return links_[link].depth_max; }  ///< m
   /// Were the pair's precise contacts looked for in this frame?
   [[nodiscard]] bool searched(std::size_t link) const { return links_[link].searched; }
+  /// Does the pair move apart that was put inside of each other?
+  [[nodiscard]] bool parts(std::size_t link) const { return links_[link].late; }
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return bodies_[body].contacts; }
 
  private:
@@ -57,6 +66,8 @@ class ExactResponse {
     std::size_t next = kNone;                            ///< body of its island
     int in_solver = exact::kFixed;
     std::uint64_t contacts = 0;
+    double rounded = 0;  ///< m/s, what the roundings of its contacts' forces gave it in this frame
+    bool told = false;   ///< of that
   };
   struct Pressing {
     exact::ConvexStep::Grip grip;
@@ -73,9 +84,13 @@ class ExactResponse {
     std::size_t found_in = kNone;  ///< frame
     Pressing pressing;             ///< of the last frame, or of a blow in this one
     int in_solver = exact::ConvexStep::kNoGrip;
+    std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
+    bool late = false;       ///< is any row, in this frame, of bodies that have not been calm since?
+    bool told = false;       ///< that they overlap
   };
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
+  void begin_frame(const World& world, OfLink& of) const;
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
   [[nodiscard]] const exact::OrientedBox& placed(const World& world, std::size_t body);
   void expect_blows(const World& world, const PairMethods& methods);
@@ -89,6 +104,7 @@ class ExactResponse {
   void read_grip(const World& world, std::size_t link, std::size_t first_row);
   void read_bodies(std::size_t island, double dt);
   void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
+  void tell(const World& world, Notes& notes);
 
   std::unique_ptr<exact::ConvexStep> solver_;  ///< null: no pair has precise contacts
   std::vector<OfBody> bodies_;

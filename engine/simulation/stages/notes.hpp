@@ -22,11 +22,12 @@ struct Note {
 
 class Notes {
  public:
-  /// Between frames. What a frame may have to say: three things of every body, one of every link, both ends of a grasp
-  /// of every hand and of the hand that it takes from, what devices report, and what found no room.
+  /// Between frames. What a frame may have to say: four things of every body, two of every link, both ends of a grasp
+  /// of every hand and of the hand that it takes from, a coupling that turns round, what devices report, and what found
+  /// no room.
   void make_room(const World& world, std::size_t links) {
     constexpr std::size_t kOthers = 64;
-    notes_.reserve(3 * world.bodies.size() + links + (5 + DeviceNotes::kMax) * world.hands.size() + kOthers);
+    notes_.reserve(4 * world.bodies.size() + 2 * links + (6 + DeviceNotes::kMax) * world.hands.size() + kOthers);
   }
   /// No allocation within that room.
   void add(const Note& note) {

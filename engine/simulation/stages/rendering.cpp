@@ -1,6 +1,7 @@
 #include "engine/simulation/stages/rendering.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/error.hpp"
 
@@ -43,6 +44,10 @@ std::string text_of_collision(const World& world, const Note& note) {
   return fmt::format("{} of {} starts to touch, in {} contacts", world.bodies[note.second].name,
                      world.hands[note.first].device->name(), note.a);
 }
+std::string text_of_turn(const World& world, const Note& note) {
+  return fmt::format("{} is turned more than half a turn ahead of '{}': the coupling now pulls it the other way round",
+                     world.hands[note.first].device->name(), world.bodies[note.second].name);
+}
 std::string text_of_report(const World& world, const Note& note) {
   return world.hands[note.first].device->name() + " " + note.detail;
 }
@@ -58,6 +63,15 @@ void note_collision(const World& world, std::size_t h, Notes& notes) {
              .a = static_cast<double>(hand.collisions)});
 }
 
+/// The coupling turns a body the shorter way: at half a turn its torque jumps to the other side.
+void note_turn(World& world, std::size_t h, const Vector3d& ahead, Notes& notes) {
+  constexpr double kNearHalfATurn = 2.5;  // rad
+  Hand& hand = world.hands[h];
+  const Vector3d before = std::exchange(hand.ahead, ahead);
+  if (before.norm() < kNearHalfATurn || ahead.norm() < kNearHalfATurn || before.dot(ahead) > 0) return;
+  notes.add({.time = world.time(), .kind = "coupling", .text = text_of_turn, .first = h, .second = hand.body});
+}
+
 }  // namespace
 
 void render(World& world, const Contacts& contacts, const ExactResponse& exact, const Response& response,
@@ -71,6 +85,9 @@ void render(World& world, const Contacts& contacts, const ExactResponse& exact, 
       wrench = felt(hand.device->reading().handle.position, world.bodies[hand.body].coupling,
                     response.loads(hand.body).target, motion.work(hand.body), world.dt);
       hand.collisions = collisions_of(world, contacts, exact, hand.body);
+      note_turn(world, h, response.loads(hand.body).coupling_at_start.e, notes);
+    } else {
+      hand.ahead.setZero();
     }
     hand.collision_starts = hand.detector.update(world.time(), hand.collisions);
     note_collision(world, h, notes);

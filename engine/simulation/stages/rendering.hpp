@@ -8,7 +8,7 @@
 
 namespace verisim {
 
-/// Notes: collision, when one starts (CollisionStart), and what devices report.
+/// Notes: collision, when one starts (CollisionStart); coupling, when it turns round; and what devices report.
 void render(World& world, const Contacts& contacts, const ExactResponse& exact, const Response& response,
             const Motion& motion, Notes& notes);
 

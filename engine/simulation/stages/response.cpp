@@ -44,15 +44,18 @@ void Response::pull(const World& world) {
 
 void Response::prepare_bodies(const World& world, const Contacts& contacts) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Body& body = world.bodies[i];
+    const bool touches = contacts.of_body(i) > 0;
     OfBody& of = bodies_[i];
+    if (!touches && !of.touched) continue;  // all is zero as it was
+    of.touched = touches;
+    const Body& body = world.bodies[i];
     of.links_touching = 0;
     of.loads.contact = {};
     of.loads.contact_mutual = {};
     of.loads.contact_stiffness.setZero();
     of.loads.contact_damping.setZero();
     of.loads.contact_drift.setZero();
-    if (contacts.of_body(i) == 0) continue;
+    if (!touches) continue;
     of.link_body = {body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), 0};
     if (world.moves(body)) of.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
   }
@@ -90,7 +93,8 @@ void Response::respond(const World& world, std::size_t l, const Contacts& contac
   LinkSides& sides = sides_[l];
   const SimulationParameters& p = world.parameters;
   const bool at_start = is_explicit(world, l);
-  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start, p.passive_contacts};
+  const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start && p.stability_rule,
+                                  p.passive_contacts};
   if (method == nullptr) {
     link.respond(first, second, penalty, world.dt);
     link.sum_up(first, second, !at_start, sides);

@@ -29,6 +29,7 @@ class Response {
   struct OfBody {
     Loads loads;
     LinkBody link_body;
+    bool touched = false;         ///< by voxels, in the last frame: only then its loads have any contact
     unsigned links_touching = 0;  ///< explicit ones: they share the body's stability budget
   };
   void prepare_bodies(const World& world, const Contacts& contacts);

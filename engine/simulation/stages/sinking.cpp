@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace verisim {
 
@@ -16,23 +17,48 @@ std::string text_of_sinking(const World& world, const Note& note) {
       world.bodies[note.first].name, note.a, 1e3 * note.b, world.parameters.contact_stiffness);
 }
 
+/// Its weight alone moves a body farther in a step than a contact of voxels is deep: no stiffness helps.
+bool is_step_too_long(const World& world, double voxel) {
+  return world.parameters.gravity.norm() * world.dt * world.dt > 0.5 * voxel;
+}
+
+std::string text_of_long_steps(const World& world, const Note& note) {
+  const double falls = world.parameters.gravity.norm() * world.dt * world.dt;
+  return fmt::format(
+      "'{}' sinks, {:.3g} mm by now: in a step of {:g} s its weight moves it by {:.3g} mm, over half a voxel; use a "
+      "timestep below {:.2g} s or larger voxels",
+      world.bodies[note.first].name, 1e3 * note.b, world.dt, 1e3 * falls,
+      std::sqrt(0.5 * note.a / world.parameters.gravity.norm()));
+}
+
+std::string text_of_exact_sinking(const World& world, const Note& note) {
+  return fmt::format(
+      "'{}' weighs {:.3g} N and sinks, {:.3g} mm by now: the contacts of its surfaces are too soft; raise "
+      "exactStiffness (now {:.3g} N/m^2), or lower its density",
+      world.bodies[note.first].name, note.a, 1e3 * note.b, world.parameters.exact_stiffness);
+}
+
 }  // namespace
 
-void Sinking::watch(const World& world, const Contacts& contacts, const Reactions& reactions, Notes& notes) {
+void Sinking::watch(const World& world, const Contacts& contacts, const ExactResponse& exact,
+                    const Reactions& reactions, Notes& notes) {
   const SimulationParameters& p = world.parameters;
   if (!p.all_bodies_are_dynamic || p.gravity.isZero(0)) return;
   for (const std::size_t l : world.near_links) {
-    if (!contacts.touches(l)) continue;
+    const bool by_surfaces = exact.count(l) > 0;
+    if ((!contacts.touches(l) && !by_surfaces) || exact.parts(l)) continue;
     const auto [first, second, number] = world.links[l];
     const double voxel = std::max(world.bodies[first].voxel_size, world.bodies[second].voxel_size);
-    const double depth = contacts.depth_max(l);
-    if (!(depth > voxel)) continue;
-    watch(world, first, depth, reactions, notes);
-    watch(world, second, depth, reactions, notes);
+    const double depth = by_surfaces ? exact.depth_max(l) : contacts.depth_max(l);
+    if (!(depth > (by_surfaces ? 0.5 : 1) * voxel)) continue;  // surfaces are looked for to a voxel's depth
+    const auto text = by_surfaces ? text_of_exact_sinking : text_of_sinking;
+    watch(world, first, depth, text, reactions, notes);
+    watch(world, second, depth, text, reactions, notes);
   }
 }
 
-void Sinking::watch(const World& world, std::size_t i, double depth, const Reactions& reactions, Notes& notes) {
+void Sinking::watch(const World& world, std::size_t i, double depth, Text text, const Reactions& reactions,
+                    Notes& notes) {
   const Body& body = world.bodies[i];
   if (told_[i] || !world.moves(body) || body.held_by != kNone) return;
   const Vector3d& g = world.parameters.gravity;
@@ -40,7 +66,13 @@ void Sinking::watch(const World& world, std::size_t i, double depth, const React
   const bool falls = body.rigid.v_C.dot(g) > 0;
   if (!falls || !(-reactions.on_body(i).force.dot(g) < weight * g.norm())) return;
   told_[i] = true;
-  notes.add({.time = world.time(), .kind = "sinking", .text = text_of_sinking, .first = i, .a = weight, .b = depth});
+  const bool step = text == text_of_sinking && is_step_too_long(world, body.voxel_size);
+  notes.add({.time = world.time(),
+             .kind = "sinking",
+             .text = step ? text_of_long_steps : text,
+             .first = i,
+             .a = step ? body.voxel_size : weight,
+             .b = depth});
 }
 
 }  // namespace verisim

@@ -1,0 +1,62 @@
+// SQLite, as far as a batch needs it: an open file, statements, rows. Errors of the disk are Error(io) with the place.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/batch/cell.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace verisim::batch {
+
+/// "NAME" as an identifier of SQL.
+[[nodiscard]] std::string sql_name(const std::string& name);
+
+/// One statement, prepared once.
+class Statement {
+ public:
+  Statement(sqlite3* database, const std::string& path, const std::string& sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  /// Of a parameter `?`, from 1.
+  void bind(int parameter, const Cell& cell);
+  /// True if there is a row; false at the end, which begins anew.
+  bool step();
+  [[nodiscard]] Cell column(int index) const;  ///< from 0
+
+ private:
+  sqlite3* database_;
+  std::string path_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+class Database {
+ public:
+  /// Opens or makes the file; WAL, so that what one transaction wrote outlives a kill -9. Error(io): it cannot be
+  /// opened or is damaged (Error(input)).
+  explicit Database(const std::string& path);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  void run(const std::string& sql);
+  /// The first cell of the first row; nothing if there is none.
+  [[nodiscard]] Cell value(const std::string& sql);
+  [[nodiscard]] Statement prepare(const std::string& sql) { return Statement(database_, path_, sql); }
+  [[nodiscard]] std::vector<std::string> columns(const std::string& table);
+  /// All that `work` does is there, or nothing of it.
+  void transaction(const std::function<void()>& work);
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  sqlite3* database_ = nullptr;
+};
+
+}  // namespace verisim::batch

@@ -1,0 +1,136 @@
+#include "engine/batch/folder.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
+#include "engine/base/user_file.hpp"
+
+namespace verisim::batch {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = "batch.json";
+constexpr const char* kLock = "batch.lock";
+
+std::string leaf_text(const ordered_json& json) {
+  return shown(json.dump(-1, ' ', false, ordered_json::error_handler_t::replace), 80);
+}
+
+/// Of an array's element: its parameter's name, else its number.
+std::string element_name(const ordered_json& element, std::size_t number) {
+  if (element.is_object() && element.contains("parameter")) return element["parameter"].get<std::string>();
+  return fmt::format("{}", number);
+}
+
+std::string difference(const std::string& path, const ordered_json& there, const ordered_json& here) {
+  const auto below = [&](const std::string& name) { return path.empty() ? name : path + "/" + name; };
+  if (there == here) return {};
+  if (there.is_object() && here.is_object()) {
+    for (const auto& [name, value] : there.items()) {
+      if (!here.contains(name)) return fmt::format("{} is {} there and not here", below(name), leaf_text(value));
+      std::string found = difference(below(name), value, here[name]);
+      if (!found.empty()) return found;
+    }
+    for (const auto& [name, value] : here.items())
+      if (!there.contains(name)) return fmt::format("{} is {} here and not there", below(name), leaf_text(value));
+    return {};
+  }
+  const auto has_objects = [](const ordered_json& j) { return j.is_array() && !j.empty() && j[0].is_object(); };
+  if (has_objects(there) && has_objects(here) && there.size() == here.size()) {
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      std::string found = difference(below(element_name(there[i], i)), there[i], here[i]);
+      if (!found.empty()) return found;
+    }
+  }
+  return fmt::format("{} is {} there and {} here", path, leaf_text(there), leaf_text(here));
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error && !fs::is_directory(path, error)) error = std::make_error_code(std::errc::not_a_directory);
+  if (error) fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", path, error.message());
+}
+
+/// Who asks SQLite for an index before the batch has made it makes an empty file of its name: that is no other thing.
+bool holds_other_things(const std::string& path) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    if (entry.path() != index_of(path) || entry.file_size(error) != 0) return true;
+  return false;
+}
+
+std::unique_ptr<MarkedFile> lock_of(const std::string& path) {
+  // Workers of a batch that was killed this moment hold its lock until they are gone, too.
+  constexpr int kTries = 20, kPauseMs = 100;
+  const std::string file = path + "/" + kLock;
+  for (int i = 0;; ++i) {
+    auto lock = std::make_unique<MarkedFile>(file, MarkedFile::Mark::writer);
+    if (lock->descriptor() < 0) refuse_write(file, system_cause());
+    if (!lock->refused()) return lock;
+    if (i == kTries)
+      fail(ErrorKind::io, "{}: another batch writes in this folder; wait for it, or name another with -o", path);
+    ::poll(nullptr, 0, kPauseMs);
+  }
+}
+
+}  // namespace
+
+std::string first_difference(const ordered_json& there, const ordered_json& here,
+                             const std::vector<std::string>& ignored) {
+  ordered_json a = there, b = here;
+  for (ordered_json* manifest : {&a, &b})
+    for (const std::string& name : ignored) manifest->erase(name);
+  return difference("", a, b);
+}
+
+ordered_json read_manifest(const std::string& folder) {
+  const std::string file = folder + "/" + kManifest;
+  if (!identity_of(file))
+    fail(ErrorKind::input, "{}: holds no batch ({} is not there); name a folder of verisim batch", folder, kManifest);
+  ordered_json json = ordered_json::parse(UserFile(file, file).content(), nullptr, false);
+  if (!json.is_object() || !json.contains("format") || json["format"] != "verisim-batch")
+    fail(ErrorKind::input, "{}: does not say what batch this is; move the folder away and run the batch again", file);
+  return json;
+}
+
+Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move(path)) {
+  make_folder(path_);
+  const std::string file = path_ + "/" + kManifest;
+  if (!identity_of(file) && !identity_of(path_ + "/" + kLock) && holds_other_things(path_))
+    fail(ErrorKind::io, "{}: holds no batch, but other things; name an empty folder or a new one with -o", path_);
+  lock_ = lock_of(path_);
+  if (identity_of(file)) {
+    const std::string found = first_difference(read_manifest(path_), manifest, {"machine", "scenario"});
+    if (found.empty()) return;
+    if (found.starts_with("version") || found.starts_with("commit") || found.starts_with("format"))
+      fail(ErrorKind::input,
+           "{}: was made by another version: {}; figures of two versions need not agree: go on with the version that "
+           "began, or name another folder with -o",
+           path_, found);
+    fail(ErrorKind::input, "{}: holds another design: {}; name another folder with -o, or move this one away", path_,
+         found);
+  }
+  Replacement replacement(file, ".part");
+  replacement.write(manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  replacement.commit();
+}
+
+std::string index_of(const std::string& folder) {
+  return folder + "/index.sqlite";
+}
+
+std::string Folder::run_file(std::uint64_t run) {
+  return fmt::format("runs/{:06}.h5", run);
+}
+
+}  // namespace verisim::batch

@@ -1,0 +1,44 @@
+// The folder of a batch: batch.json says which design its index belongs to; one batch at a time writes in it.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "engine/record/file_replace.hpp"
+
+namespace verisim::batch {
+
+class Folder {
+ public:
+  /// Makes the folder or goes on in it. `manifest` is what batch.json holds or has to hold: members below "machine" may
+  /// differ. Error(input): it holds another design, which is named; Error(io): it holds other things, cannot be made,
+  /// or another batch writes in it.
+  Folder(std::string path, const nlohmann::ordered_json& manifest);
+  /// The lock alone stays: a name that another process may be waiting for is not taken away.
+  ~Folder() = default;
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+  /// runs/000123.h5, below the folder.
+  [[nodiscard]] static std::string run_file(std::uint64_t run);
+
+ private:
+  std::string path_;
+  std::unique_ptr<MarkedFile> lock_;
+};
+
+/// The index of a batch's folder: index.sqlite.
+[[nodiscard]] std::string index_of(const std::string& folder);
+
+/// batch.json of a folder. Error(input): there is none, or it is something else.
+[[nodiscard]] nlohmann::ordered_json read_manifest(const std::string& folder);
+
+/// The first difference of two manifests but for "machine": "design/vary/clearance/values is [1,2] there and [1,3]
+/// here"; empty: none. Members of `ignored` count for nothing.
+[[nodiscard]] std::string first_difference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& here,
+                                           const std::vector<std::string>& ignored);
+
+}  // namespace verisim::batch

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "engine/base/error.hpp"
+#include "engine/batch/workers.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/options.hpp"
+#include "engine/cli/scenarios_folder.hpp"
+#include "engine/cli/stability_output.hpp"
+#include "engine/session/interrupts.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/session/prepared_parts.hpp"
+#include "engine/session/progress_line.hpp"
+#include "engine/session/session.hpp"
+#include "engine/stability/extremes.hpp"
+#include "engine/stability/ledger.hpp"
+#include "engine/stability/maps.hpp"
+
+namespace verisim::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using stability::Row;
+using stability::RowKind;
+using stability::Task;
+
+/// The scenarios that are shipped, but for what others require.
+constexpr std::array kShipped = {"assembly",
+                                 "bubble_stickiness",
+                                 "declared",
+                                 "head_tracking",
+                                 "iso_fit",
+                                 "peg_in_hole",
+                                 "peg_in_hole_step",
+                                 "pins",
+                                 "reach",
+                                 "seats",
+                                 "slide",
+                                 "stack",
+                                 "tray"};
+constexpr double kShort = 2;  // s, of a shipped scenario unless all is asked for
+
+struct StabilityOptions {
+  std::string scenario, scenarios;
+  OutOptions out;
+  std::vector<std::string> only, sets;
+  std::optional<double> duration;
+  unsigned jobs = 0;
+  bool all = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The energy of a scenario's run.
+Row ledger_of(const ScenarioOptions& options) {
+  const fs::path path(options.path);
+  std::unique_ptr<stability::EnergyAudit> audit;
+  const std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
+  auto inputs = std::make_unique<Inputs>(Inputs::live(folder, named_paths(options), prepared_parts()));
+  Session session = open_session(options, std::move(inputs), 1, true,
+                                 [&](const Scene& scene) { audit = std::make_unique<stability::EnergyAudit>(scene); });
+  Simulation& simulation = *session.simulation;
+  audit->start(simulation);
+  std::string told;
+  while (simulation.frame() < simulation.frames_planned() && !session.scenario->finished()) {
+    simulation.step();
+    for (const Event& event : simulation.events())
+      if (event.kind == "energy" && told.empty()) told = event.text;
+    simulation.clear_events();
+    audit->look(simulation);
+  }
+  Row row = audit->row(path.filename().string(), simulation);
+  if (!told.empty()) row.why += (row.why.empty() ? "" : "; ") + told;
+  return row;
+}
+
+void add_ledgers(const StabilityOptions& o, std::vector<Task>& tasks) {
+  std::vector<std::string> paths;
+  if (!o.scenario.empty()) {
+    std::error_code error;
+    if (!fs::exists(o.scenario, error))
+      fail(ErrorKind::input, "{}: there is no such file; name a scenario", o.scenario);
+    paths = {end_of_links(o.scenario)};
+  } else {
+    const std::string folder = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
+    for (const char* name : kShipped) paths.push_back(fmt::format("{}/{}.lua", folder, name));
+  }
+  for (const std::string& path : paths) {
+    ScenarioOptions options;
+    options.path = path;
+    options.sets = split_pairs("--set", o.sets);
+    options.duration = o.duration;
+    if (o.scenario.empty() && !o.all && !o.duration) options.duration = kShort;
+    tasks.push_back(
+        {"", RowKind::ledger, fs::path(path).filename().string(), false, [options] { return ledger_of(options); }});
+  }
+}
+
+std::vector<Task> tasks_of(const StabilityOptions& o) {
+  const auto wanted = [&](const std::string& what) {
+    return o.only.empty() || std::find(o.only.begin(), o.only.end(), what) != o.only.end();
+  };
+  std::vector<Task> all, tasks;
+  for (Task& task : stability::map_tasks())
+    if (wanted("maps") || wanted(task.map)) all.push_back(std::move(task));
+  if (wanted("extremes"))
+    for (Task& task : stability::extreme_tasks()) all.push_back(std::move(task));
+  for (Task& task : all)
+    if (o.all || !task.is_long) tasks.push_back(std::move(task));
+  if (wanted("ledgers")) add_ledgers(o, tasks);
+  return tasks;
+}
+
+/// A row whose worker did not answer: refused input, or a crash, which is a failure of ours.
+Row lost(const Task& task, const batch::WorkerEnd& end) {
+  Row row;
+  row.what = task.what;
+  row.outcome = stability::Outcome::refused;
+  row.theory = "an answer";
+  row.holds = false;
+  row.why = end.exit_code >= 0 ? end.last_words
+                               : fmt::format("ended by {}: {}", batch::signal_name(end.signal), end.last_words);
+  return row;
+}
+
+/// Each row in a process of its own, so that one that crashes is a row. Their order is that of the tasks.
+std::vector<StabilityRow> compute(std::vector<Task> tasks, const StabilityOptions& o) {
+  std::vector<StabilityRow> rows(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i) rows[i].task = std::move(tasks[i]);
+  batch::Workers workers(o.jobs > 0 ? o.jobs : batch::cores(), {},
+                         [&](std::uint64_t i) { return json_text(json_of(rows[i].task.compute())); });
+  const ProgressLine line(!o.quiet);
+  std::size_t begun = 0, done = 0;
+  while (done < rows.size()) {
+    while (begun < rows.size() && workers.is_free()) workers.begin(begun++);
+    for (const batch::WorkerEnd& end : workers.wait(0.2)) {
+      StabilityRow& row = rows[end.run];
+      row.row = end.exit_code == 0 ? row_of(ordered_json::parse(end.answer)) : lost(row.task, end);
+      row.cpu_s = end.user_s + end.system_s;
+      ++done;
+    }
+    if (was_interrupted()) fail(ErrorKind::interrupted, "interrupted");
+    line.say(fmt::format("{} of {} rows", done, rows.size()));
+  }
+  return rows;
+}
+
+int run_stability(const StabilityOptions& o) {
+  if (!o.out.path.empty()) check_folder(o.out.path, o.out.force);
+  const std::vector<StabilityRow> rows = compute(tasks_of(o), o);
+  if (!o.out.path.empty()) write_folder(o.out.path, o.out.force, rows);
+  std::printf("%s%s", o.json ? json_text(json_of(rows)).c_str() : tables_of(rows).c_str(), o.json ? "\n" : "");
+  return broken_promises(rows).empty() ? 0 : static_cast<int>(ErrorKind::check_failed);
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand(
+      "stability", "Where the simulation is stable, beside the bounds of theory; extremes; who gave a run its energy");
+  auto o = std::make_shared<StabilityOptions>();
+  command->add_option("scenario", o->scenario,
+                      "Scenario whose energy is accounted for (default: all that are shipped)");
+  add_out_options(*command, o->out, "Folder for stability.json, CSV files and pictures of the maps");
+  std::vector<std::string> parts = {"maps", "extremes", "ledgers"};
+  for (const stability::MapDescription& map : stability::map_descriptions()) parts.push_back(map.name);
+  command->add_option("--only", o->only, "Only all maps, one of them, extremes or ledgers (repeatable)")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(parts));
+  command->add_option("--set", o->sets, "Scenario parameter, KEY=VALUE (repeatable)")->allow_extra_args(false);
+  command->add_option("--duration", o->duration, "Simulated time of each scenario, s (default: 2 of a shipped one)")
+      ->check(seconds());
+  command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");
+  command->add_option("--jobs", o->jobs, "Rows computed at once (default: all cores); the same bits")
+      ->check(CLI::Range(1U, 4096U));
+  command->add_flag("--long", o->all, "All rows, scenarios to their end: many minutes");
+  command->add_flag("--json", o->json, "One JSON object on stdout");
+  command->add_flag("--quiet", o->quiet, "No progress");
+  command->footer(
+      "Exit code 1 if a promise does not hold: a bound beyond its tolerance, a cell that contradicts theory, a ledger\n"
+      "that does not close, an extreme that fails and no event of its run says so, a row without an answer. An "
+      "extreme\n"
+      "that fails and is told of ('held: no', with the event as 'why') is no failure of the command: exit code 0.\n"
+      "Example: verisim stability --only ledgers scenarios/stack.lua");
+  command->callback([=, &exit_code] { exit_code = run_stability(*o); });
+}
+
+}  // namespace verisim::cli

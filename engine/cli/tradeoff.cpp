@@ -1,0 +1,170 @@
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.hpp"
+#include "engine/base/hash.hpp"
+#include "engine/base/text.hpp"
+#include "engine/cli/commands.hpp"
+#include "engine/cli/options.hpp"
+#include "engine/cli/streams.hpp"
+#include "engine/cli/tradeoff_sweep.hpp"
+#include "engine/contact/query.hpp"
+#include "engine/record/output_place.hpp"
+#include "engine/session/json_text.hpp"
+#include "engine/tradeoff/bounds.hpp"
+
+namespace verisim::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using tradeoff::Table;
+
+struct TradeoffOptions {
+  SweepRequest sweep;
+  std::string by, budget, error, simd;
+  OutOptions out;
+  bool json = false;
+};
+
+/// What is asked of the table. Read before anything is computed.
+struct Question {
+  tradeoff::Bounds bounds;
+  tradeoff::Kind by = tradeoff::Kind::force;
+};
+
+Question question_of(const TradeoffOptions& o) {
+  Question question;
+  if (!o.by.empty()) question.by = tradeoff::kind_named("--by " + o.by, o.by);
+  if (!o.budget.empty()) question.bounds.budget_us = tradeoff::budget_from("--budget " + o.budget, o.budget);
+  if (!o.error.empty()) {
+    question.bounds.error = tradeoff::error_bound_from("--error " + o.error, o.error, o.by);
+    question.by = question.bounds.error->kind;
+  }
+  return question;
+}
+
+constexpr const char* kJsonBegin = "{\"format\":\"verisim-tradeoff\"";
+
+/// Where -o writes, looked at before the work begins.
+struct Places {
+  std::string json, csv, plot;
+};
+Places places_in(const std::string& folder, bool force) {
+  if (folder.empty()) return {};
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", folder, error.message());
+  Places places = {folder + "/tradeoff.json", folder + "/tradeoff.csv", folder + "/tradeoff.svg"};
+  (void)check_output({places.json, OutputKind::text, force, kJsonBegin});
+  (void)check_output({places.csv, OutputKind::text, force, "setting,"});
+  (void)check_output({places.plot, OutputKind::text, force, beginning_of(tradeoff::plot_of({}))});
+  return places;
+}
+
+void write(const Places& places, const Table& table) {
+  if (places.json.empty()) return;
+  write_text(places.json, json_text(json_of(table)) + "\n", true);
+  write_text(places.csv, csv_of(table), true);
+  write_text(places.plot, plot_of(table), true);
+}
+
+void print_table(const Table& table) {
+  std::printf("truth: %s\n", shown(table.truth).c_str());
+  if (!table.convergence.empty()) std::printf("  %s\n", table.convergence.c_str());
+  for (const std::string& note : table.notes) std::printf("note: %s\n", shown(note).c_str());
+  std::printf("%s", tradeoff::text_of(table).c_str());
+  std::string front;
+  for (const std::size_t i : front_of(table.rows, table.by)) front += fmt::format("{}{}", front.empty() ? "" : ", ", i);
+  std::printf("front by '%s' (%s): %s\n", tradeoff::kKinds[index_of(table.by)].name,
+              tradeoff::kKinds[index_of(table.by)].meaning, front.empty() ? "no setting has it" : front.c_str());
+}
+
+/// 1 and a line on stderr if no setting keeps the bounds.
+int tell(const Table& table, const Question& question, bool as_json) {
+  const bool asked = question.bounds.budget_us || question.bounds.error;
+  std::optional<std::size_t> setting;
+  if (asked) setting = choose(table.rows, question.bounds, question.by);
+  if (as_json) {
+    ordered_json all = json_of(table);
+    if (asked)
+      all["setting"] =
+          setting ? ordered_json{{"row", *setting}, {"parameters", table.rows[*setting].parameters}} : ordered_json();
+    std::printf("%s\n", json_text(all).c_str());
+  } else {
+    print_table(table);
+    if (setting)
+      std::printf("setting: %s (%zu)\n", tradeoff::text_of(table.rows[*setting].parameters).c_str(), *setting);
+  }
+  if (!asked || setting) return 0;
+  print_error(("no setting keeps " + tradeoff::text_of(question.bounds) + "; vary more, or ask for less").c_str());
+  return static_cast<int>(ErrorKind::check_failed);
+}
+
+int run_tradeoff(const TradeoffOptions& o) {
+  use_simd_target(o.simd);
+  const Question question = question_of(o);
+  Sweep sweep(o.sweep);
+  const Places places = places_in(o.out.path, o.out.force);
+  const Table table = sweep.table(question.by);
+  write(places, table);
+  return tell(table, question, o.json);
+}
+
+void add_sweep_options(CLI::App& command, SweepRequest& sweep) {
+  command.add_option("--vary", sweep.vary, "KEY=V1,V2,…: a dial (repeatable, crossed); values as --set takes them")
+      ->allow_extra_args(false)
+      ->take_all();
+  command
+      .add_option("--truth", sweep.truth,
+                  "KEY=VALUE (repeatable): the reference setting, step included (default: hybrid=exact and the finest "
+                  "of each dial, at a tenth of the step)")
+      ->allow_extra_args(false)
+      ->take_all();
+  command.add_option("--repeat", sweep.repeat, "Repetitions, each with its own seed (default 3)")
+      ->check(CLI::Range(1, 10000));
+  add_seed_option(
+      command, [&sweep](std::uint64_t seed) { sweep.seed = seed; },
+      "Seed of the sweep, of which the runs' are made (default 1)");
+  command.add_option("--set", sweep.sets, "KEY=VALUE: of all settings, as in verisim run")
+      ->allow_extra_args(false)
+      ->take_all();
+  command.add_option("--bind", sweep.binds, "NAME=SOURCE: of all runs, as in verisim run")
+      ->allow_extra_args(false)
+      ->take_all();
+  command.add_option("--duration", sweep.duration, "Simulated seconds of each run")->check(seconds());
+  command.add_option("--time-limit", sweep.time_limit_s, "Seconds of wall clock of a run (default: an hour)")
+      ->check(seconds());
+  command
+      .add_option("--memory-limit", sweep.memory_limit_mb, "MiB of memory of a run (default: 80 % of the machine's)")
+      ->check(CLI::Range(1, 1 << 30));
+  add_cache_option(command, sweep.no_cache);
+  command.add_flag("--quiet", sweep.quiet, "No progress");
+}
+
+}  // namespace
+
+void add_tradeoff(CLI::App& app, int& exit_code) {
+  auto* command =
+      app.add_subcommand("tradeoff", "The speed-accuracy trade of a scenario: table, Pareto front, setting to use");
+  auto o = std::make_shared<TradeoffOptions>();
+  command->add_option("SCENARIO", o->sweep.scenario, "Lua script that describes the scene")->required();
+  add_sweep_options(*command, o->sweep);
+  command->add_option("--budget", o->budget, "200us: the most accurate setting whose median frame keeps that");
+  command->add_option("--error", o->error, "0.05N, 0.01mm, 5%: the cheapest setting whose error keeps that");
+  command->add_option("--by", o->by,
+                      "Error of the front and of --error: wrench, force, force_max, torque, torque_max, position, "
+                      "rotation, overlap, work, flips (default: force, or what the unit of --error says)");
+  command->add_option("--simd", o->simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
+  add_out_options(*command, o->out, "Folder for tradeoff.json, tradeoff.csv and tradeoff.svg");
+  command->add_flag("--json", o->json, "One JSON object on stdout");
+  command->footer(
+      "Exit code 1: no setting keeps --budget and --error.\n"
+      "Example: verisim tradeoff scenarios/peg_in_hole.lua --vary hybrid=off,restore,exact --vary "
+      "voxelsize=4.5mm,9mm --duration 2 --repeat 2 --error 0.5N");
+  command->callback([=, &exit_code] { exit_code = run_tradeoff(*o); });
+}
+
+}  // namespace verisim::cli

@@ -1,0 +1,96 @@
+"""Batches, by the program: a run is a process of its own, and what it does to itself is a row."""
+import json
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import warnings
+
+from ._verisim import Failure
+from .values import list_of, settings
+
+
+class Batch:
+    """The folder of a batch. groups: outcomes and measures with their intervals."""
+
+    def __init__(self, folder):
+        self.folder = os.fspath(folder)
+        self._index = os.path.join(self.folder, "index.sqlite")
+        if not os.path.exists(self._index):
+            raise Failure(f"{self.folder}: holds no batch; name a folder of verisim batch")
+        self.report = None
+
+    groups = property(lambda self: self.report["groups"] if self.report else None)
+
+    def rows(self, query="SELECT * FROM run ORDER BY run"):
+        """A dict per run, or what else the query asks for (tables run, timing, unit)."""
+        database = sqlite3.connect(f"file:{self._index}?mode=rw", uri=True)
+        try:
+            database.row_factory = sqlite3.Row
+            return [dict(row) for row in database.execute(query)]
+        finally:
+            database.close()
+
+    def to_pandas(self):
+        """A DataFrame with a row per run."""
+        import pandas
+
+        return pandas.DataFrame(self.rows()).set_index("run")
+
+
+def batch(scenario, out, parameters=None, *, vary=None, repeat=1, seed=None, design=None, random=None, jobs=None, duration=None,
+          measure=False, keep="summary", time_limit=None, binds=None, **more):
+    """Runs many: vary={"clearance": ["1mm", "0.1mm"]} is a grid, random=(1000, {"clearance": "1mm..5mm"}) draws, design
+    a CSV file. parameters and more: as in run(). Goes on where a batch in the folder `out` stopped. Failure as the
+    program says it; a run that could not be done is a row, and a warning says how many there are."""
+    arguments = ["batch", os.fspath(scenario), "-o", os.fspath(out), "--json", "--repeat", str(repeat), "--keep", keep]
+    for key, values in (vary or {}).items():
+        arguments += ["--vary", f"{key}={list_of(key, values)}"]
+    for key, text in settings(parameters, more):
+        arguments += ["--set", f"{key}={text}"]
+    for name, source in (binds or {}).items():
+        arguments += ["--bind", f"{name}={os.fspath(source)}"]
+    for option, value in (("--seed", seed), ("--design", design), ("--jobs", jobs), ("--duration", duration),
+                          ("--time-limit", time_limit)):
+        if value is not None:
+            arguments += [option, os.fspath(value) if option == "--design" else str(value)]
+    if measure:
+        arguments.append("--measure")
+    if random is not None:
+        draws, keys = random
+        arguments += ["--random", str(draws), *(f"{key}={text}" for key, text in keys.items())]
+    exit_code, printed, said = _ended([_program(), *arguments])
+    lines = said.strip().splitlines()
+    if exit_code not in (0, 1) or not printed:
+        raise Failure(lines[-1].removeprefix("error: ") if lines else f"verisim ended with {exit_code}")
+    for line in lines:
+        warnings.warn(line.removeprefix("warning: ").removeprefix("error: "), RuntimeWarning, stacklevel=2)
+    made = Batch(out)
+    made.report = json.loads(printed)
+    return made
+
+
+def _ended(command):
+    """What it ended with and printed. Ctrl-C lets it end its workers and keep its rows."""
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        printed, said = process.communicate()
+    except BaseException:
+        process.send_signal(signal.SIGINT)
+        process.wait()
+        raise
+    return process.returncode, printed, said
+
+
+def _program():
+    """As it was built or installed with this module, else the one on the path."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    above = [os.path.normpath(os.path.join(here, *[".."] * n)) for n in (2, 4)]  # build/python/verisim; lib/python3/…
+    for program in (os.path.join(above[0], "verisim"), os.path.join(above[1], "bin", "verisim")):
+        if os.access(program, os.X_OK) and os.path.isfile(program):
+            return program
+    program = shutil.which("verisim")
+    if program is None:
+        raise Failure("the program verisim is neither beside this module nor on the path; install it")
+    return program

@@ -1,0 +1,218 @@
+"""The Python module: fields, tables, errors, frames. Against h5py, which shares no code with it."""
+import contextlib
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import unittest
+import unittest.mock
+
+import h5py
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from program import SMALL, VERISIM, ProgramTest  # noqa: E402
+
+sys.path.insert(0, os.path.join(os.path.dirname(VERISIM), "python"))
+import verisim  # noqa: E402
+
+
+class PythonModule(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scenario = self.write("small.lua", SMALL)
+
+    def run_small(self, parameters=None, **more):
+        return verisim.run(self.scenario, parameters, **{"duration": 0.3, "out": self.path("a.h5"), **more})
+
+    def test_every_field_is_what_h5py_reads(self):
+        run = self.run_small()
+        with h5py.File(self.path("a.h5")) as file:
+            self.assertGreater(len(run), 30)
+            for path, field in run.fields.items():
+                numpy.testing.assert_array_equal(run[path], file[path][()], path)
+                self.assertEqual(run[path].dtype, file[path].dtype, path)
+                self.assertEqual(field.units, file[path].attrs["units"], path)
+            self.assertEqual(run.summary["state_hash"] if "state_hash" in run.summary else run.attributes["state_hash"],
+                             file.attrs["state_hash"])
+            events = file["events"][()]
+            self.assertEqual([e.text for e in run.events], [e["text"].decode() for e in events])
+            self.assertGreater(len(events), 0)
+
+    def test_nothing_is_read_before_it_is_asked_for_and_then_once(self):
+        run = self.run_small()
+        self.assertEqual(run._read, {})
+        self.assertIs(run["state/time"], run["/state/time"])
+        self.assertEqual(list(run._read), ["/state/time"])
+        with self.assertRaises(ValueError):
+            run["state/time"][0] = 1
+
+    def test_a_run_that_was_replaced_stays_what_it_was(self):
+        first = self.run_small(seed=1)
+        self.run_small(duration=0.1, seed=2)
+        self.assertEqual((first.frames, first["state/time"].shape), (300, (300,)))
+
+    def test_tables(self):
+        run = self.run_small()
+        table = run.to_pandas()
+        self.assertEqual(len(table), 300)
+        numpy.testing.assert_array_equal(table["state/body/box/pose.2"], run["state/body/box/pose"][:, 2])
+        numpy.testing.assert_array_equal(table.index, run["state/time"])
+        self.assertEqual(table.attrs["units"]["state/body/box/force.0"], "N, N m")
+        self.assertFalse([c for c in table.columns if c.startswith("state/links/")])
+        with self.assertRaisesRegex(ValueError, "no row in every frame"):
+            run.to_pandas(["state/links/wrench"])
+        data = run.to_xarray()
+        self.assertEqual(set(data.data_vars), {path.lstrip("/") for path in run.fields})
+        self.assertEqual(data["state/body/box/pose"].dims, ("frame", "pose"))
+        self.assertEqual(data["state/links/wrench"].sizes["state/links/row"], len(run["state/links/pair"]))
+        self.assertEqual(data["state/body/box/pose"].attrs["units"], "m, 1")
+        self.assertEqual(data["time"].dims, ("frame",))
+
+    def test_each_frame_sees_what_is_recorded_and_may_end_the_run(self):
+        seen = []
+
+        def each_frame(frame):
+            seen.append((frame.number, frame.time, frame.pose("box"), frame.velocity("box"), frame.contact_wrench("box")))
+            return frame.number < 40
+
+        run = self.run_small(each_frame=each_frame)
+        self.assertEqual(run.frames, 40)
+        self.assertEqual([s[0] for s in seen], list(range(1, 41)))
+        for i, path in ((2, "pose"), (3, "twist"), (4, "force")):
+            numpy.testing.assert_array_equal([s[i] for s in seen], run[f"state/body/box/{path}"])
+
+    def test_what_a_callback_throws_comes_out_and_the_file_is_readable(self):
+        def each_frame(frame):
+            if frame.number == 20:
+                raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            self.run_small(each_frame=each_frame)
+        self.assertEqual(verisim.Run(self.path("a.h5")).frames, 20)
+
+    def test_bad_input_is_a_failure_that_says_what_to_do(self):
+        for wanted, call in (
+                ("did you mean 'voxelsize'", lambda: self.run_small(voxelsiez=1)),
+                ("nowhere.lua", lambda: verisim.run(self.path("nowhere.lua"))),
+                ("shorter than one frame", lambda: self.run_small(duration=1e-9)),
+                ("threads", lambda: self.run_small(threads=0)),
+                ("/dev/full", lambda: self.run_small(out="/dev/full")),
+                ("is not an HDF5 file", lambda: verisim.Run(self.scenario)),
+                ("holds no batch", lambda: verisim.Batch(self.folder))):
+            with self.subTest(wanted), self.assertRaisesRegex(verisim.Failure, wanted):
+                call()
+        run = self.run_small()
+        with self.assertRaisesRegex(verisim.Failure, "did you mean '/state/body/box/pose'"):
+            run["state/body/box/poes"]
+        with self.assertRaisesRegex(verisim.Failure, "no body is called 'bxo'; did you mean 'box'"):
+            self.run_small(each_frame=lambda frame: frame.pose("bxo"))
+
+    def test_a_frame_that_was_kept_says_that_it_is_over(self):
+        kept = []
+        self.run_small(each_frame=kept.append)
+        for look in (lambda frame: frame.number, lambda frame: frame.bodies, lambda frame: frame.pose("box")):
+            with self.assertRaisesRegex(verisim.Failure, "this frame is over"):
+                look(kept[0])
+
+    def test_parameters_that_are_named_like_keywords(self):
+        run = self.run_small({"duration": 0.2, "voxelsize": "20mm"}, duration=None, word="b")
+        self.assertEqual((run.frames, run.parameters["voxelsize"], run.parameters["word"]), (200, 0.02, "b"))
+        with self.assertRaisesRegex(verisim.Failure, "word: is given twice"):
+            self.run_small({"word": "a"}, word="b")
+
+    def test_what_the_program_warns_of_is_a_warning(self):
+        cache = self.path("cache")
+        with unittest.mock.patch.dict(os.environ, {"VERISIM_CACHE": cache}):
+            self.run_small()
+            for entry in os.listdir(cache):
+                with open(os.path.join(cache, entry), "r+b") as f:
+                    f.truncate(os.path.getsize(f.name) // 2)
+            with self.assertWarnsRegex(RuntimeWarning, "were damaged and have been made anew"):
+                run = self.run_small()
+            self.assertIn("damaged", run.warnings[0])
+
+    def test_what_the_scenario_says_comes_out_as_pythons(self):
+        scenario = self.write("say.lua", SMALL + """
+print("built")
+Actions.addFrameAction(function() Actions.waitSeconds(0.1) print("ran") error("no further") end)""")
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said), self.assertWarnsRegex(RuntimeWarning, "no further"):
+            verisim.run(scenario, out=self.path("a.h5"))
+        self.assertEqual(said.getvalue(), "built\nran\n")
+
+    def test_bad_input_that_is_met_on_the_way_is_a_failure(self):
+        scenario = self.write("near.lua", """
+defineSimulationParameters{ duration = 1 }
+addObject{ name = "plate", fixed = true, voxelsize = 1e-7, Solid.box{0.3, 0.3, 0.02} }
+local box = addObject{ name = "box", voxelsize = 0.01, position = {0, 0, 2}, Solid.box{0.06, 0.06, 0.04} }
+local hand = Devices.Hand{ name = "hand", path = { {position = {0, 0, 2}} } }
+addDevice(hand)
+grasp(hand, box)
+Actions.addFrameAction(function() Actions.waitSeconds(0.1) box.position = {0, 0, 0.03} end)""")
+        with self.assertRaisesRegex(verisim.Failure, "plate.*voxel"):
+            verisim.run(scenario, out=self.path("a.h5"))
+        self.assertGreater(verisim.Run(self.path("a.h5")).frames, 90)
+
+    def test_a_batch_tells_what_the_program_says(self):
+        with self.assertWarnsRegex(RuntimeWarning, "run 0 .word=no.*failed: .*: no"):
+            batch = verisim.batch(self.write("odd.lua", SMALL.replace("local box", "if p.word == 'no' then error('no') end local box")),
+                                  self.path("b"), vary={"word": ["no", "yes"]}, duration=0.05)
+        self.assertEqual([row["status"] for row in batch.rows()], ["failed", "done"])
+        with self.assertRaisesRegex(verisim.Failure, "word: 'a,b': a comma parts values"):
+            verisim.batch(self.scenario, self.path("c"), vary={"word": ["a,b"]})
+        batch = verisim.batch(self.scenario, self.path("d"), {"duration": 0.05}, vary={"word": ["'a,b'", "c"]})
+        self.assertEqual([row["word"] for row in batch.rows()], ["a,b", "c"])
+
+    def test_a_run_that_diverges_is_a_run(self):
+        scenario = self.write("far.lua", """
+defineSimulationParameters{ duration = 1, gravity = {0, 0, -1e308}, allBodiesAreDynamic = true }
+addObject{ name = "box", voxelsize = 0.01, Solid.box{0.06, 0.06, 0.04} }""")
+        with self.assertWarnsRegex(RuntimeWarning, "not a finite number"):
+            run = verisim.run(scenario, out=self.path("far.h5"))
+        self.assertEqual(run.figures["end"], "diverged")
+        self.assertIn("not a finite number", run.error)
+
+    def test_ctrl_c_ends_a_run(self):
+        # Who starts the tests in the background has them ignore SIGINT, and Python then leaves it so.
+        code = f"""
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.path.insert(0, {os.path.dirname(VERISIM) + "/python"!r})
+import verisim
+def each_frame(frame):
+    if frame.number == 1:
+        print("on", flush=True)
+    time.sleep(0.01)
+try:
+    verisim.run({self.scenario!r}, duration=20, out="long.h5", each_frame=each_frame)
+except KeyboardInterrupt:
+    print("interrupted", verisim.Run("long.h5").frames > 0)
+"""
+        process = subprocess.Popen(["/usr/bin/python3", "-c", code], cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        self.assertEqual(process.stdout.readline(), "on\n")
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate(timeout=60)
+        self.assertEqual(said, "interrupted True\n")
+
+    def test_runs_in_several_threads_are_what_they_are_alone(self):
+        from concurrent.futures import ThreadPoolExecutor
+        with ThreadPoolExecutor(4) as pool:
+            hashes = list(pool.map(
+                lambda i: self.run_small(seed=i % 2, out=self.path(f"t{i}.h5")).figures["state_hash"], range(8)))
+        for seed in (0, 1):
+            alone = self.run_json("run", self.scenario, "--seed", seed, "--duration", 0.3, "-o", self.path("p.h5"))
+            self.assertEqual(set(hashes[seed::2]), {alone["state_hash"]})
+
+    def test_the_json_of_a_run_is_the_programs(self):
+        run = self.run_small()
+        plain = self.run_json("run", self.scenario, "--duration", 0.3, "-o", self.path("p.h5"))
+        self.assertEqual(list(run.figures), list(plain))
+        self.assertEqual(json.dumps(run.figures["outcome"]), json.dumps(plain["outcome"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

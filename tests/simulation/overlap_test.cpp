@@ -1,0 +1,129 @@
+// Bodies that begin inside of each other, or are put there, part under exact contact without being thrown: judged from
+// velocities and events.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/simulation/hybrid_scenes.hpp"
+#include "tests/support/random_inputs.hpp"
+
+namespace verisim::overlap_test {
+namespace {
+
+using verisim::test::Inputs;
+using verisim::test::seeds;
+
+constexpr std::size_t kBox = 1;
+/// m/s: as fast as contacts push apart what began inside (ConvexStep::kPushOut).
+constexpr double kPushOut = 0.5;
+
+struct Found {
+  double fastest = 0;  ///< m/s
+  std::vector<Event> overlaps;
+  bool sinks = false;
+};
+
+Found run(Simulation& simulation) {
+  Found found;
+  while (simulation.frame() < simulation.frames_planned()) {
+    simulation.step();
+    found.fastest = std::max(found.fastest, simulation.body_twist(kBox).linear.norm());
+    for (const Event& event : simulation.events()) {
+      if (event.kind == "overlap") found.overlaps.push_back(event);
+      found.sinks = found.sinks || event.kind == "sinking";
+    }
+    simulation.clear_events();
+  }
+  return found;
+}
+
+/// A cube over a fixed plate, with its lowest point `depth` edges below the plate's face.
+Scene cube_in_plate(double size, double depth, const Quaterniond& turned, double dt) {
+  Scene scene;
+  scene.parameters.hybrid = hybrid::exact;
+  scene.parameters.integrator = Integrator::implicit;
+  scene.parameters.all_bodies_are_dynamic = true;
+  scene.parameters.timestep = dt;
+  scene.parameters.duration = 200 * dt;
+  const double voxel = size / 20;
+  scene.bodies.push_back(scenes::body_of("plate", *scenes::solid(Solid::Kind::box, {3 * size, 3 * size, size}), voxel));
+  scene.bodies.push_back(scenes::body_of("box", *scenes::solid(Solid::Kind::box, {size, size, size}), voxel));
+  scene.bodies[0].fixed = true;
+  scene.bodies[0].X_WB.position = {0, 0, -size / 2};
+  scene.bodies[kBox].density = 1000;
+  const double reach = 0.5 * size * turned.toRotationMatrix().row(2).cwiseAbs().sum();
+  scene.bodies[kBox].X_WB = {{0, 0, reach - depth * size}, turned};
+  return scene;
+}
+
+// Unmended, a row as deep as a voxel ended in one step: voxel / dt, 2.4 m/s at 50 mm and 1 ms, 24 m/s at 0.1 ms.
+TEST(Overlap, AtTheBeginningThrowsNobody) {
+  for (const std::uint64_t seed : seeds(12)) {
+    Inputs in(seed);
+    const double size = std::pow(10, in.between(-2.5, -0.5)), depth = std::pow(10, in.between(-2, -0.3));
+    const double dt = in.between(0, 1) < 0.5 ? 1e-3 : 1e-4;
+    Quaterniond turned = Quaterniond::Identity();
+    if (in.between(0, 1) < 0.5) turned = in.rotation();
+    Scene scene = cube_in_plate(size, depth, turned, dt);
+    scene.parameters.restitution = in.between(0, 1) < 0.5 ? 0 : 0.5;
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << size << " m, " << depth << " edges, " << dt << " s");
+    Simulation simulation(std::move(scene), {});
+    const Found found = run(simulation);
+    EXPECT_LE(found.fastest, kPushOut);
+    ASSERT_EQ(found.overlaps.size(), 1U);
+    EXPECT_NE(found.overlaps[0].text.find("'plate' and 'box'"), std::string::npos) << found.overlaps[0].text;
+  }
+}
+
+TEST(Overlap, ByASetPoseIsLikeOneAtTheBeginning) {
+  Scene scene = cube_in_plate(0.05, -1, Quaterniond::Identity(), 1e-3);
+  const Pose inside{{0, 0, 0.02}, Quaterniond::Identity()};
+  Simulation simulation(std::move(scene), {});
+  for (int i = 0; i < 150; ++i) simulation.step();
+  EXPECT_TRUE(simulation.events().empty() || simulation.events().back().kind != "overlap");
+  simulation.set_body_pose(kBox, inside);
+  const Found found = run(simulation);
+  EXPECT_LE(found.fastest, kPushOut);
+  EXPECT_EQ(found.overlaps.size(), 1U);
+}
+
+TEST(Overlap, IsNotToldOfWhatTouches) {
+  Scene scene = cube_in_plate(0.05, 0, Quaterniond::Identity(), 1e-3);
+  scene.parameters.gravity = {0, 0, -9.81};
+  Simulation simulation(std::move(scene), {});
+  const Found found = run(simulation);
+  EXPECT_TRUE(found.overlaps.empty());
+  EXPECT_LE(found.fastest, 1e-6);
+}
+
+// Flush sides say nothing of how deep a box is pressed into the one below: unmended, deeper than 1 um + its way in a
+// step it had no contact any more, and fell through.
+TEST(Overlap, OfAHeavyBoxFlushWithTheOneBelowIsWhatItsSpringsSay) {
+  for (const double load : {1e3, 1e5, 3e5}) {  // N
+    Scene scene = cube_in_plate(0.05, 0, Quaterniond::Identity(), 1e-3);
+    scene.bodies[0].parts = scene.bodies[kBox].parts;  // of one size
+    scene.bodies[0].X_WB.position.z() = -0.025;
+    scene.bodies[kBox].density = load / 9.81 / (0.05 * 0.05 * 0.05);
+    scene.parameters.gravity = {0, 0, -9.81};
+    Simulation simulation(std::move(scene), {});
+    (void)run(simulation);
+    // Put on it at once: no deeper than twice what four edges of steel give way.
+    const double deepest = 2 * load / (SimulationParameters().exact_stiffness * 4 * 0.05);
+    EXPECT_GE(simulation.body_pose(kBox).position.z(), 0.025 - deepest) << load << " N";
+  }
+}
+
+// Its weight holds it on the plate as it comes out; that is not sinking.
+TEST(Overlap, IsNoSinking) {
+  Scene scene = cube_in_plate(0.05, 0.3, Quaterniond::Identity(), 1e-3);
+  scene.parameters.gravity = {0, 0, -9.81};
+  Simulation simulation(std::move(scene), {});
+  const Found found = run(simulation);
+  EXPECT_FALSE(found.sinks);
+  EXPECT_EQ(found.overlaps.size(), 1U);
+  EXPECT_NEAR(simulation.body_pose(kBox).position.z(), 0.025, 1e-3);
+}
+
+}  // namespace
+}  // namespace verisim::overlap_test
