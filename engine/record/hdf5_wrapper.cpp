@@ -6,11 +6,13 @@
 #include "engine/base/error.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
-// HDF5 1.10 forgets some memory when it refuses a damaged file; that would hide what this program forgets.
-extern "C" const char* __lsan_default_suppressions() {
+// HDF5 1.10 forgets some memory when it refuses a damaged file; that would hide what this program forgets. The
+// sanitizer, a library of its own, finds these functions only if they are not hidden (engine/CMakeLists.txt).
+#define VERISIM_SANITIZER_HOOK extern "C" __attribute__((visibility("default")))
+VERISIM_SANITIZER_HOOK const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }
-extern "C" const char* __lsan_default_options() {
+VERISIM_SANITIZER_HOOK const char* __lsan_default_options() {
   return "print_suppressions=0";
 }
 #endif
