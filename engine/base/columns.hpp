@@ -6,6 +6,9 @@
 // Type and shape follow from what the getter returns (Recorded below). Rows are packed without padding: first all that
 // stands under /state, so that the state of a frame is one run of bytes, then all else, each in the order of adding.
 //
+// What is added between begin_part() and end_part() is a part of the state: of one subject, a body. Who knows which
+// subjects are as they were writes only the others' parts into the row of the frame before.
+//
 // Besides the row of every frame there is one table whose rows come and go: as many in a frame as there are subjects
 // worth one (pairs of bodies that are near each other).
 #pragma once
@@ -14,6 +17,7 @@
 #include <concepts>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -106,8 +110,11 @@ class Columns {
     Column column{std::move(path),  Recorded<Value>::kType, Recorded<Value>::kWidth,
                   std::move(units), std::move(description), 0,
                   std::move(names), std::move(due)};
-    auto& facts = column.path.starts_with("/state/") ? state_ : other_;
-    return facts.add(std::move(column), [get = std::move(get)](std::byte*& at) { Recorded<Value>::put(at, get()); });
+    const bool is_state = column.path.starts_with("/state/");
+    if (is_state) add_to_run(column);
+    return (is_state ? state_ : other_).add(std::move(column), [get = std::move(get)](std::byte*& at) {
+      Recorded<Value>::put(at, get());
+    });
   }
 
   /// Declares a fact of the table's rows. `get` is called with the subject of each row. `rows_in_frame`: see Column.
@@ -124,6 +131,17 @@ class Columns {
                [get = std::move(get)](std::byte*& at, std::size_t subject) { Recorded<Value>::put(at, get(subject)); });
   }
 
+  /// Parts are numbered from 0, in their order; none is within another.
+  void begin_part() {
+    VERISIM_ASSERT(!in_part_);
+    in_part_ = true;
+    parts_.push_back({state_.put.size(), 0, state_.bytes, 0});
+  }
+  void end_part() {
+    VERISIM_ASSERT(in_part_);
+    in_part_ = false;
+  }
+
   [[nodiscard]] const std::vector<Column>& state() const { return state_.columns; }
   [[nodiscard]] const std::vector<Column>& other() const { return other_.columns; }
   [[nodiscard]] const std::vector<Column>& table() const { return table_.columns; }
@@ -133,6 +151,15 @@ class Columns {
 
   /// Writes state_bytes(), other_bytes() or table_bytes() from `at` on. No allocation. About 3 ns a fact.
   void put_state(std::byte* at) const { state_.put_all(at); }
+  /// Writes what belongs to no part, and these parts; the other bytes stay.
+  void put_state(std::byte* at, std::span<const std::size_t> parts) const {
+    each_run(parts, [&](const Run& run) { state_.put_run(at, run.first, run.facts, run.offset); });
+  }
+  /// Calls f(offset, bytes) for all that put_state(at, parts) writes.
+  template <typename F>
+  void each_written(std::span<const std::size_t> parts, const F& f) const {
+    each_run(parts, [&](const Run& run) { f(run.offset, run.bytes); });
+  }
   void put_other(std::byte* at) const { other_.put_all(at); }
   void put_table_row(std::byte* at, std::size_t subject) const { table_.put_all(at, subject); }
 
@@ -148,12 +175,38 @@ class Columns {
       put.push_back(std::move(put_value));
       return columns.back();
     }
+    void put_run(std::byte* at, std::size_t first, std::size_t count, std::size_t offset, Subject... subject) const {
+      at += offset;
+      for (std::size_t i = first; i < first + count; ++i) put[i](at, subject...);
+    }
     void put_all(std::byte* at, Subject... subject) const {
       const std::byte* const end = at + bytes;
       for (const auto& put_next : put) put_next(at, subject...);
       VERISIM_ASSERT(at == end);
     }
   };
+  /// Facts of the state that lie together.
+  struct Run {
+    std::size_t first, facts, offset, bytes;
+  };
+  template <typename F>
+  void each_run(std::span<const std::size_t> parts, const F& f) const {
+    for (const Run& run : rest_) f(run);
+    for (const std::size_t i : parts) {
+      VERISIM_ASSERT(i < parts_.size());
+      f(parts_[i]);
+    }
+  }
+  void add_to_run(const Column& column) {
+    if (!in_part_ && (rest_.empty() || rest_.back().offset + rest_.back().bytes != state_.bytes))
+      rest_.push_back({state_.put.size(), 0, state_.bytes, 0});
+    Run& run = in_part_ ? parts_.back() : rest_.back();
+    ++run.facts;
+    run.bytes += column.bytes();
+  }
+
+  std::vector<Run> parts_, rest_;
+  bool in_part_ = false;
   Facts<> state_, other_;
   Facts<std::size_t> table_;
 };

@@ -2,6 +2,7 @@
 // One pass, half a nanosecond a number.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -35,6 +36,21 @@ class FiniteNumbers {
     std::uint64_t sign = 0;  // an exponent of ones carries into it
     for (const auto& [offset, count] : stretches_)
       for (std::size_t i = 0; i < count; ++i) sign |= (bits(row + offset + 8 * i) & kExponent) + kExponentUnit;
+    return (sign >> 63) == 0;
+  }
+
+  /// Of those in `bytes` from `offset` on. @pre columns begin and end there
+  [[nodiscard]] bool all_in(const std::byte* row, std::size_t offset, std::size_t bytes) const {
+    std::uint64_t sign = 0;
+    const auto ends_before = [](const auto& stretch, std::size_t at) {
+      return stretch.first + 8 * stretch.second <= at;
+    };
+    auto stretch = std::lower_bound(stretches_.begin(), stretches_.end(), offset, ends_before);
+    for (; stretch != stretches_.end() && stretch->first < offset + bytes; ++stretch) {
+      const std::size_t from = std::max(offset, stretch->first);
+      const std::size_t to = std::min(offset + bytes, stretch->first + 8 * stretch->second);
+      for (std::size_t at = from; at < to; at += 8) sign |= (bits(row + at) & kExponent) + kExponentUnit;
+    }
     return (sign >> 63) == 0;
   }
 

@@ -20,19 +20,27 @@ struct BroadPhase::Implementation {
   fcl::DynamicAABBTreeCollisionManagerd moving, fixed;
   bool fixed_ready = false;
   std::vector<Box> boxes;
+  std::vector<fcl::CollisionObjectd*> placed;  ///< those that find_of() is asked for
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   std::size_t left_out = 0;
 
+  static std::uint32_t index(const fcl::CollisionObjectd* o) {
+    return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(o->getUserData()));
+  }
   static bool collect(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
     auto* self = static_cast<Implementation*>(data);
-    const auto index = [](const fcl::CollisionObjectd* o) {
-      return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(o->getUserData()));
-    };
+    if (a == b) return false;
     if (self->pairs.size() < self->pairs.capacity())
       self->pairs.emplace_back(std::min(index(a), index(b)), std::max(index(a), index(b)));
     else
       ++self->left_out;
     return false;  // go on: all pairs are wanted
+  }
+  void begin() {
+    pairs.clear();
+    left_out = 0;
+    if (!fixed_ready && !fixed.empty()) fixed.update();
+    fixed_ready = true;
   }
 };
 
@@ -51,6 +59,7 @@ BroadPhase::BroadPhase(const std::vector<BroadPhaseBody>& bodies)
     self.boxes.push_back(std::move(box));
   }
   self.moving.setup();
+  self.placed.reserve(bodies.size());
   make_room();
 }
 
@@ -70,16 +79,32 @@ void BroadPhase::set_pose(std::size_t body, const Pose& X_WB, double ahead) {
 
 const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find() {
   Implementation& self = *implementation_;
-  self.pairs.clear();
-  self.left_out = 0;
-  if (!self.fixed_ready && !self.fixed.empty()) self.fixed.update();
-  self.fixed_ready = true;
+  self.begin();
   if (!self.moving.empty()) {
     self.moving.update();
     self.moving.collide(&self, &Implementation::collect);
     if (!self.fixed.empty()) self.moving.collide(&self.fixed, &self, &Implementation::collect);
   }
   std::sort(self.pairs.begin(), self.pairs.end());
+  return self.pairs;
+}
+
+const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find_of(std::span<const std::size_t> bodies) {
+  Implementation& self = *implementation_;
+  self.begin();
+  self.placed.clear();
+  for (const std::size_t i : bodies) {
+    VERISIM_ASSERT(i < self.boxes.size());
+    VERISIM_ASSERT(self.boxes[i].can_move);
+    self.placed.push_back(self.boxes[i].object.get());
+  }
+  if (!self.placed.empty()) self.moving.update(self.placed);
+  for (fcl::CollisionObjectd* const object : self.placed) {
+    self.moving.collide(object, &self, &Implementation::collect);
+    if (!self.fixed.empty()) self.fixed.collide(object, &self, &Implementation::collect);
+  }
+  std::sort(self.pairs.begin(), self.pairs.end());
+  self.pairs.erase(std::unique(self.pairs.begin(), self.pairs.end()), self.pairs.end());  // of two of them: found twice
   return self.pairs;
 }
 

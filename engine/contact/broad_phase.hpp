@@ -2,10 +2,12 @@
 //
 // World coordinates. Pairs are (i, j), i < j, in ascending order, so that later sums have an order. Pairs of two bodies
 // that cannot move are left out. find() allocates nothing: pairs for which there is no room are left out and counted.
+// A frame in which few bodies move costs what these cost: theirs are the only boxes and pairs that change.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -30,8 +32,12 @@ class BroadPhase {
   /// @pre body is one of those given to the constructor; X_WB is finite, its rotation unit; ahead is finite, not
   /// negative
   void set_pose(std::size_t body, const Pose& X_WB, double ahead);
-  /// The pairs of this frame; valid until the next call.
+  /// All pairs; valid until the next call.
   [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find();
+  /// The pairs of these bodies alone, where no other has been placed since the last find(); valid until the next call.
+  /// @pre bodies are ascending, and can move
+  [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find_of(
+      std::span<const std::size_t> bodies);
   /// Pairs for which the last find() had no room.
   [[nodiscard]] std::size_t left_out() const;
   /// Makes room for twice as many as the last find() met. Returns for how many. Allocates.

@@ -191,6 +191,8 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
               .bodies = {},
               .links = {},
               .near_links = {},
+              .moving = {},
+              .busy = {},
               .hands = {},
               .companions = scene.companions,
               .clocks = Clocks(scene.parameters.timestep)};
@@ -204,6 +206,9 @@ World make_world(const Scene& scene, std::vector<Event>& events) {
     events.push_back({0, "device", device->described()});
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(place_body(scene, world, i));
+  world.moving.reserve(world.bodies.size());
+  world.busy.reserve(world.bodies.size());
+  world.list_moving();
   return world;
 }
 

@@ -82,7 +82,11 @@ std::array<double, 8> balance_of(const EnergyBook& book) {
 Columns declare(const World& world, const Stages& stages, const FrameCost& cost) {
   Columns columns;
   columns.add("/state/time", "s", "simulated time at the end of the frame", [&world] { return world.time(); });
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) declare_body(world, stages, i, columns);
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    columns.begin_part();
+    declare_body(world, stages, i, columns);
+    columns.end_part();
+  }
   for (const Hand& hand : world.hands) declare_device(*hand.device, columns);
   declare_links(world, stages, columns);
   for (const CostCounter& counter : kCostCounters)
@@ -133,7 +137,7 @@ void Recording::take(const World& world, const Stages& stages, FrameCost& cost) 
   take_links(world, stages);
   cost.links = table_.size() / columns_.table_bytes();
   std::byte* at = row_.data() + columns_.state_bytes();
-  columns_.put_state(row_.data());
+  columns_.put_state(row_.data(), world.busy);
   columns_.put_other(at + sizeof hash_);
   check_finite(world);
   add_up(world, stages, cost);
@@ -143,24 +147,28 @@ void Recording::take(const World& world, const Stages& stages, FrameCost& cost) 
 }
 
 void Recording::check_finite(const World& world) const {
-  const auto check = [&](const FiniteNumbers& numbers, const std::vector<Column>& columns, const std::byte* row,
-                         const auto& whose) {
-    if (numbers.all_in(row)) return;
+  const auto refuse = [&](const FiniteNumbers& numbers, const std::vector<Column>& columns, const std::byte* row,
+                          const std::string& whose) {
     const auto [column, component, value] = *numbers.first_not_in(row);
     const std::string index = columns[column].width > 1 ? fmt::format("[{}]", component) : "";
     fail(ErrorKind::diverged,
          "frame {}: {}{}{} is {}, not a finite number any more; lower the stiffness or the time step", world.frame - 1,
-         columns[column].path, index, whose(), value);
+         columns[column].path, index, whose, value);
   };
-  const auto nobody = [] { return std::string(); };
-  check(state_numbers_, columns_.state(), row_.data(), nobody);
-  check(other_numbers_, columns_.other(), row_.data() + columns_.state_bytes() + sizeof hash_, nobody);
+  bool finite = true;
+  columns_.each_written(world.busy, [&](std::size_t offset, std::size_t bytes) {
+    finite = state_numbers_.all_in(row_.data(), offset, bytes) && finite;
+  });
+  if (!finite) refuse(state_numbers_, columns_.state(), row_.data(), "");
+  const std::byte* const other = row_.data() + columns_.state_bytes() + sizeof hash_;
+  if (!other_numbers_.all_in(other)) refuse(other_numbers_, columns_.other(), other, "");
   std::size_t at = 0;
   for (const std::size_t l : recorded_links_) {
-    check(table_numbers_, columns_.table(), table_.data() + at, [&] {
-      return fmt::format(" of '{}' and '{}'", world.bodies[world.links[l].first].name,
-                         world.bodies[world.links[l].second].name);
-    });
+    const std::byte* const row = table_.data() + at;
+    if (!table_numbers_.all_in(row))
+      refuse(table_numbers_, columns_.table(), row,
+             fmt::format(" of '{}' and '{}'", world.bodies[world.links[l].first].name,
+                         world.bodies[world.links[l].second].name));
     at += columns_.table_bytes();
   }
 }
@@ -217,9 +225,8 @@ void Recording::add_up(const World& world, const Stages& stages, const FrameCost
     if (found.constraint != ConstraintKind::none) active[static_cast<std::size_t>(found.constraint)] = 1;
   }
   for (std::size_t kind = 0; kind < active.size(); ++kind) totals_.constraint_frames[kind] += active[kind];
-  for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    if (world.moves(world.bodies[i]))
-      totals_.force_max = std::max(totals_.force_max, stages.reactions.on_body(i).force.norm());
+  for (const std::size_t i : world.moving)
+    totals_.force_max = std::max(totals_.force_max, stages.reactions.on_body(i).force.norm());
 }
 
 }  // namespace verisim

@@ -43,6 +43,7 @@ void Simulation::prepare() {
   Implementation& self = *implementation_;
   Neighbours& neighbours = self.stages.neighbours;
   self.tell();
+  if (self.poses_set) neighbours.look_anew();
   if (self.poses_set) self.look_around();
   self.poses_set = false;
   self.stages.exact.make_room();
@@ -156,6 +157,7 @@ void Simulation::set_body_pose(std::size_t index, const Pose& X_WB) {
   body.rigid.set_pose(X_WB);
   body.rigid.v_C = body.rigid.omega = Vector3d::Zero();
   implementation_->stages.exact.forget(implementation_->world, index);
+  implementation_->stages.busy.add(index);
   implementation_->poses_set = true;
 }
 

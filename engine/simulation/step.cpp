@@ -42,6 +42,7 @@ void Simulation::step() {
   cost.pairs_met = met.size() - std::exchange(met_before, met.size());
   s.grasping.sample(world);  // raw pose -> virtual handle
   s.grasping.update(world, notes);
+  s.busy.list(world);
   timer.done(Stage::sources);
   s.energy.enter_jump(world);
   s.response.pull(world);  // virtual coupling
@@ -65,6 +66,7 @@ void Simulation::step() {
   ++world.frame;
   for (const auto& companion : world.companions) companion->advance(world.time());
   world.clocks.run_due(world.frame, world.time());  // scripts: same thread, fixed order
+  world.list_moving();                              // which may have taken and let go
   timer.done(Stage::clocks);
   s.energy.settle(world);
   left_out.tell(cost, world.time(), notes);

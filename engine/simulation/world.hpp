@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/companion.hpp"
@@ -78,6 +79,13 @@ struct World {
   std::vector<Link> links;  ///< in the order in which they were made; grows between frames. Simulation::prepare
   /// Links whose bodies are near in this frame, ascending (first, second): what stages look at. stages/neighbours
   std::vector<std::size_t> near_links;
+  /// Bodies that move in this frame, ascending. Whoever writes Body::held_by sets `holds_changed`. list_moving()
+  std::vector<std::size_t> moving;
+  bool holds_changed = true;
+  /// Bodies of which anything is computed in this frame, ascending: those that move or are of a near link, and those of
+  /// the last frame, so that what it left behind of them is taken back. Of all others everything is as it was.
+  /// stages/busy
+  std::vector<std::size_t> busy;
   std::vector<Hand> hands;
   std::vector<std::shared_ptr<Companion>> companions;
   Clocks clocks;
@@ -88,6 +96,13 @@ struct World {
   /// Does it move in this frame? What nobody holds stands still unless all bodies are dynamic.
   [[nodiscard]] bool moves(const Body& body) const {
     return body.can_move && (parameters.all_bodies_are_dynamic || body.held_by != kNone);
+  }
+  /// Writes `moving`.
+  void list_moving() {
+    if (!std::exchange(holds_changed, false)) return;
+    moving.clear();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (moves(bodies[i])) moving.push_back(i);
   }
   [[nodiscard]] bool is_implicit() const { return parameters.integrator == Integrator::implicit; }
 };

@@ -49,6 +49,39 @@ TEST(Columns, StorePosesTwistsAndWrenchesInTheOrderThatIsPromised) {
   for (std::size_t i = 0; i < 21; ++i) EXPECT_EQ(value_at<double>(row, i * sizeof(double)), static_cast<double>(i + 1));
 }
 
+// Facts before, between and behind the parts are written every time.
+TEST(Columns, WriteThePartsThatAreNamedAndLeaveTheOthers) {
+  double now = 1;
+  Columns columns;
+  const auto add = [&](const char* path) { columns.add(path, "", "", [&] { return now; }); };
+  add("/state/before");
+  for (int part = 0; part < 3; ++part) {
+    columns.begin_part();
+    add("/state/x");
+    add("/cost/x");
+    add("/state/y");
+    columns.end_part();
+    if (part == 1) add("/state/between");
+  }
+  add("/state/behind");
+  std::vector<std::byte> row(columns.state_bytes());
+  const auto values = [&] {
+    std::vector<double> all;
+    for (std::size_t at = 0; at < row.size(); at += sizeof now) all.push_back(value_at<double>(row, at));
+    return all;
+  };
+  columns.put_state(row.data());
+  now = 2;
+  columns.put_state(row.data(), std::vector<std::size_t>{2, 0});
+  EXPECT_EQ(values(), (std::vector<double>{2, 2, 2, 1, 1, 2, 2, 2, 2}));
+  now = 3;
+  columns.put_state(row.data(), {});
+  EXPECT_EQ(values(), (std::vector<double>{3, 2, 2, 1, 1, 3, 2, 2, 3}));
+  std::size_t bytes = 0;
+  columns.each_written(std::vector<std::size_t>{1}, [&](std::size_t, std::size_t run) { bytes += run; });
+  EXPECT_EQ(bytes, 5 * sizeof now);
+}
+
 TEST(Columns, ReadTheirValuesAnewForEveryRow) {
   double now = 1;
   Columns columns;

@@ -35,6 +35,8 @@ TEST(BroadPhaseDeathTest, KeepsBoxesThatAreSomewhere) {
   BroadPhase fixed({{Vector3d::Zero(), Vector3d::Ones(), false}});
   static_cast<void>(fixed.find());
   EXPECT_BROKEN(fixed.set_pose(0, Pose(), 0), "box.can_move || !implementation_->fixed_ready");
+  EXPECT_BROKEN(static_cast<void>(fixed.find_of(std::vector<std::size_t>{1})), "i < self.boxes.size()");
+  EXPECT_BROKEN(static_cast<void>(fixed.find_of(std::vector<std::size_t>{0})), "self.boxes[i].can_move");
 }
 
 /// Both ways to ask, the fast and the plain one, have the same door.

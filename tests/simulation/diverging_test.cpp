@@ -176,6 +176,11 @@ TEST(Diverging, FindsEveryNumberThatIsNoneWhereItStands) {
         if (columns[c].dtype == Dtype::f64) std::memcpy(&row[offset + i * sizeof value], &value, sizeof value);
         const bool bad = columns[c].dtype == Dtype::f64 && !std::isfinite(value);
         ASSERT_EQ(numbers.all_in(row.data()), !bad) << c << " " << i << " " << value;
+        for (std::size_t from = 0, begin = 0; from < columns.size(); begin += columns[from++].bytes())
+          for (std::size_t to = from, end = begin; to < columns.size(); ++to) {
+            end += columns[to].bytes();
+            ASSERT_EQ(numbers.all_in(row.data(), begin, end - begin), !bad || c < from || c > to) << from << " " << to;
+          }
         const auto place = numbers.first_not_in(row.data());
         ASSERT_EQ(place.has_value(), bad);
         if (!bad) continue;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.hpp"
-#include "tests/simulation/scenes.hpp"
+#include "tests/simulation/few_move_scene.hpp"
 
 namespace verisim::requires_test {
 namespace {
@@ -49,24 +49,8 @@ TEST(Requires, BodiesApartCostABroadPhaseOnly) {
 
 // 200 parts of which 3 move: what the 3 do to each other and to the plate is all that is counted, in every frame.
 TEST(Requires, PartsThatNothingComesNearCostNoWork) {
-  const auto frames_of = [](int far_parts) {
-    Scene scene = scenes::falling_boxes(3, Integrator::semi_implicit);
-    for (int i = 0; i < far_parts; ++i) {
-      BodyDescription part = scenes::body_of("part" + std::to_string(i), scenes::centred_box({0.05, 0.05, 0.05}), -1);
-      part.fixed = true;
-      part.X_WB.position = {2 + 0.2 * (i % 20), 0.2 * (i / 20), -5};
-      scene.bodies.push_back(part);
-    }
-    scene.parameters.all_bodies_are_dynamic = false;
-    for (std::size_t i = 1; i <= 3; ++i) {
-      const Pose& start = scene.bodies[i].X_WB;
-      HandDescription hand;
-      hand.name = "hand" + std::to_string(i);
-      hand.path = {{start}, {{start.position - Vector3d(0, 0, 0.03), start.rotation}, 0.2}};
-      scene.devices.push_back(make_hand(hand));
-      scene.grasps.push_back({i - 1, i});
-    }
-    Simulation simulation(std::move(scene), {});
+  const auto frames_of = [](int others, bool fixed) {
+    Simulation simulation(scenes::three_move_among(others, fixed), {});
     std::vector<FrameCost> costs;
     while (simulation.frame() < 400) {
       simulation.prepare();
@@ -75,14 +59,17 @@ TEST(Requires, PartsThatNothingComesNearCostNoWork) {
     }
     return costs;
   };
-  const std::vector<FrameCost> few = frames_of(0), many = frames_of(197);
-  std::uint64_t contacts = 0;
-  for (std::size_t i = 0; i < few.size(); ++i) {
-    contacts += few[i].contacts;
-    for (const CostCounter& counter : kCostCounters)
-      EXPECT_EQ(many[i].*counter.count, few[i].*counter.count) << counter.name << " in frame " << i;
+  const std::vector<FrameCost> few = frames_of(0, true);
+  for (const bool fixed : {true, false}) {
+    const std::vector<FrameCost> many = frames_of(197, fixed);
+    std::uint64_t contacts = 0;
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      contacts += few[i].contacts;
+      for (const CostCounter& counter : kCostCounters)
+        EXPECT_EQ(many[i].*counter.count, few[i].*counter.count) << counter.name << " in frame " << i;
+    }
+    EXPECT_GT(contacts, 0U);
   }
-  EXPECT_GT(contacts, 0U);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "engine/simulation/stages/contacts.hpp"
 
-#include <algorithm>
-
 #include "engine/base/error.hpp"
 #include "engine/simulation/stages/neighbours.hpp"
 #include "engine/simulation/stages/pair_methods.hpp"
@@ -29,8 +27,10 @@ Pose Contacts::X_AB(const World& world, std::size_t l) const {
 }
 
 void Contacts::query(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost) {
-  std::fill(of_body_.begin(), of_body_.end(), 0);
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) p_WC_[i] = world.bodies[i].rigid.p_WC;
+  for (const std::size_t i : world.busy) {
+    of_body_[i] = 0;
+    p_WC_[i] = world.bodies[i].rigid.p_WC;
+  }
   for (const std::size_t l : world.near_links) {
     links_[l]->clear();
     const auto [i, j, number] = world.links[l];

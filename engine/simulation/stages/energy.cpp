@@ -12,8 +12,8 @@ double spring_energy_of(const World& world, const Body& body) {
 EnergyState energy_of(const World& world) {
   const double shadow_dt = world.is_implicit() ? 0 : world.dt;
   EnergyState e;
-  for (const Body& body : world.bodies) {
-    if (!body.can_move) continue;
+  for (const std::size_t i : world.moving) {
+    const Body& body = world.bodies[i];
     e.kinetic += body.rigid.kinetic_energy();
     if (world.parameters.all_bodies_are_dynamic) {
       const Vector3d weight = body.rigid.mass * world.parameters.gravity;

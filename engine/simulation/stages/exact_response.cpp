@@ -100,7 +100,7 @@ void ExactResponse::solve(const World& world, const Neighbours& neighbours, cons
            bodies_[world.links[l].first].solved && bodies_[world.links[l].second].solved;
   });
   list_islands(world);
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
+  for (const std::size_t i : world.busy)
     if (bodies_[i].solved && island_[i] == i) solve_island(world, i, cost);
   tell(world, notes);
 }
@@ -111,7 +111,7 @@ void ExactResponse::forget(const World& world, std::size_t body) {
 }
 
 void ExactResponse::tell(const World& world, Notes& notes) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (const std::size_t i : world.busy) {
     OfBody& of = bodies_[i];
     if (of.told || !of.solved || !(of.rounded > kRounded)) continue;
     of.told = true;
@@ -133,11 +133,13 @@ void ExactResponse::tell(const World& world, Notes& notes) {
 
 /// Bodies and links of each island, in their order: chains that begin at the island's first body.
 void ExactResponse::list_islands(const World& world) {
-  for (OfBody& of : bodies_) {
+  for (const std::size_t i : world.busy) {
+    OfBody& of = bodies_[i];
     of.in_solver = exact::kFixed;
     of.first_body = of.first_link = kNone;
   }
-  for (std::size_t i = bodies_.size(); i-- > 0;) {
+  for (std::size_t n = world.busy.size(); n-- > 0;) {
+    const std::size_t i = world.busy[n];
     if (!bodies_[i].solved) continue;
     OfBody& island = bodies_[island_[i]];
     bodies_[i].next = std::exchange(island.first_body, i);
@@ -152,7 +154,7 @@ void ExactResponse::list_islands(const World& world) {
 }
 
 void ExactResponse::begin(const World& world, const Response& response) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (const std::size_t i : world.busy) {
     OfBody& of = bodies_[i];
     of.solved = of.placed = false;
     of.speed = 0;
@@ -170,7 +172,7 @@ void ExactResponse::begin(const World& world, const Response& response) {
 /// What a body may meet in this step because another one hits it first: it goes no faster then than that one, and its
 /// own rebound, let it. One body farther; the next in a row is the next step's.
 void ExactResponse::expect_blows(const World& world, const PairMethods& methods) {
-  for (OfBody& of : bodies_) of.speed_hit = of.speed;
+  for (const std::size_t i : world.busy) bodies_[i].speed_hit = bodies_[i].speed;
   for (const std::size_t l : world.near_links) {
     if (methods.acting(l) == nullptr || methods.acting(l)->precise() == nullptr) continue;
     const Link& link = world.links[l];

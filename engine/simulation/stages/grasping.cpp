@@ -94,6 +94,7 @@ void Grasping::take(World& world, std::size_t h, std::size_t index, bool by_scri
   hand.by_script = by_script;
   hand.X_HB = hand.device->reading().handle.inverse() * body.rigid.pose();
   body.held_by = h;
+  world.holds_changed = true;
   notes.add({.time = world.time(), .kind = "grasp", .text = text_of_grasp, .first = h, .second = index});
 }
 
@@ -104,6 +105,7 @@ void Grasping::let_go(World& world, std::size_t h, Notes& notes) {
   const std::size_t index = hand.body;
   Body& body = world.bodies[index];
   body.held_by = kNone;
+  world.holds_changed = true;
   hand.body = kNone;
   hand.by_script = false;
   if (!world.parameters.all_bodies_are_dynamic) body.rigid.v_C = body.rigid.omega = Vector3d::Zero();

@@ -6,9 +6,8 @@ namespace verisim {
 
 void Motion::advance(World& world, const Response& response, const ExactResponse& exact, const Passivity& passivity,
                      Ledger& ledger) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+  for (const std::size_t i : world.moving) {
     Body& body = world.bodies[i];
-    if (!world.moves(body)) continue;
     const Loads& loads = response.loads(i);
     work_[i] = exact.solved(i)       ? end_implicit(body.rigid, loads, exact.step(i), exact.velocity_after(i),
                                                     exact.wrench(i), world.dt, &exact.velocity(i))

@@ -1,6 +1,7 @@
 #include "engine/simulation/stages/neighbours.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/error.hpp"
 
@@ -62,8 +63,13 @@ Neighbours::Neighbours(const World& world)
     : broad_phase_(boxes_of(world)),
       boxes_(world.bodies.size()),
       ahead_(world.bodies.size()),
-      told_(world.bodies.size(), false) {
+      told_(world.bodies.size(), false),
+      movable_(static_cast<std::size_t>(
+          std::count_if(world.bodies.begin(), world.bodies.end(), [](const Body& body) { return body.can_move; }))),
+      is_placed_(world.bodies.size()) {
   VERISIM_ASSERT(world.bodies.size() < (std::size_t{1} << 32));
+  moved_.reserve(world.bodies.size());
+  placed_.reserve(world.bodies.size());
   for (std::size_t i = 0; i < world.bodies.size(); ++i) place(world, i);
 }
 
@@ -74,9 +80,9 @@ void Neighbours::place(const World& world, std::size_t i) {
 }
 
 void Neighbours::watch(const World& world, Notes& notes) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+  for (const std::size_t i : world.moving) {
     const Body& body = world.bodies[i];
-    if (told_[i] || !world.moves(body) || !body.method->needs_precise_surfaces()) continue;
+    if (told_[i] || !body.method->needs_precise_surfaces()) continue;
     if (!(world.dt * speed_of(body) > ahead_[i])) continue;
     told_[i] = true;
     notes.add({.time = world.time(), .kind = "late contact", .text = text_of_late, .first = i});
@@ -84,12 +90,14 @@ void Neighbours::watch(const World& world, Notes& notes) {
 }
 
 void Neighbours::look_around(World& world) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].can_move) place(world, i);
+  if (std::exchange(anew_, false))
+    find_all(world);
+  else
+    find_of_moving(world);
+  moved_ = world.moving;
   world.near_links.clear();
   strangers_.clear();
-  for (const auto& [i, j] : broad_phase_.find()) {  // whose boxes are wider: spheres' around what is turned
-    if (gap(boxes_[i], boxes_[j]) > ahead_[i] + ahead_[j]) continue;
+  for (const auto& [i, j] : near_) {
     const std::size_t l = link_of(i, j);
     if (l == kNone || world.links[l].number == kNone)
       strangers_.emplace_back(i, j);
@@ -98,10 +106,50 @@ void Neighbours::look_around(World& world) {
   }
 }
 
+void Neighbours::find_all(const World& world) {
+  for (std::size_t i = 0; i < world.bodies.size(); ++i)
+    if (world.bodies[i].can_move) place(world, i);
+  near_.clear();
+  merge_near(broad_phase_.find());
+}
+
+/// What stood still is as near to each other as it was.
+void Neighbours::find_of_moving(const World& world) {
+  for (const std::size_t i : moved_) is_placed_.add(i);
+  for (const std::size_t i : world.moving) is_placed_.add(i);
+  std::erase_if(near_, [&](const NearPair& pair) { return is_placed_.has(pair.first) || is_placed_.has(pair.second); });
+  placed_.clear();
+  is_placed_.move_to(placed_);
+  for (const std::size_t i : placed_) place(world, i);
+  merge_near(placed_.size() == movable_ ? broad_phase_.find() : broad_phase_.find_of(placed_));
+}
+
+/// Adds those of the tree's pairs that are near: it has spheres' boxes around what is turned.
+void Neighbours::merge_near(const std::vector<NearPair>& found) {
+  std::swap(near_, stood_);
+  near_.clear();
+  left_out_ = 0;
+  auto next = stood_.begin();
+  const auto add = [&](const NearPair& pair) {
+    if (near_.size() < room_)
+      near_.push_back(pair);
+    else
+      ++left_out_;
+  };
+  for (const auto& pair : found) {
+    const auto [i, j] = pair;
+    if (gap(boxes_[i], boxes_[j]) > ahead_[i] + ahead_[j]) continue;
+    for (; next != stood_.end() && *next < pair; ++next) add(*next);
+    add(pair);
+  }
+  for (; next != stood_.end(); ++next) add(*next);
+}
+
 void Neighbours::make_room(World& world) {
-  const std::size_t pairs = broad_phase_.make_room();
-  world.near_links.reserve(pairs);
-  strangers_.reserve(pairs);
+  room_ = std::max(broad_phase_.make_room(), 2 * (near_.size() + left_out_));
+  for (std::vector<NearPair>* list : {&near_, &stood_, &strangers_}) list->reserve(room_);
+  world.near_links.reserve(room_);
+  anew_ = true;
 }
 
 std::size_t Neighbours::link_of(std::size_t first, std::size_t second) const {

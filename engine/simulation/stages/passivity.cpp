@@ -16,7 +16,7 @@ Passivity::Passivity(const World& world)
       scale_(world.bodies.size(), 1) {}
 
 bool Passivity::watch_links(const World& world, const Contacts& contacts, const PairMethods& methods) {
-  std::fill(watched_.begin(), watched_.end(), false);
+  for (const std::size_t i : world.busy) watched_[i] = false;
   bool any = false;
   for (const std::size_t l : world.near_links) {
     const bool touches = contacts.touches(l);
@@ -32,7 +32,7 @@ bool Passivity::watch_links(const World& world, const Contacts& contacts, const 
 
 void Passivity::bound(const World& world, const Contacts& contacts, const PairMethods& methods,
                       const Response& response, const ExactResponse& exact, const Ledger& ledger) {
-  std::fill(scale_.begin(), scale_.end(), 1);
+  for (const std::size_t i : world.busy) scale_[i] = 1;
   if (!watch_links(world, contacts, methods) || !world.parameters.passive_contacts) return;
   const auto moves = [&](std::size_t i) { return world.moves(world.bodies[i]); };
   join_bodies(world, group_, [&](std::size_t l) {
@@ -42,19 +42,19 @@ void Passivity::bound(const World& world, const Contacts& contacts, const PairMe
 }
 
 void Passivity::bound_groups(const World& world, const Response& response, const ExactResponse& exact, double budget) {
-  std::fill(work_.begin(), work_.end(), ContactWork{});
-  for (std::size_t i = 0; i < group_.size(); ++i)
+  for (const std::size_t i : world.busy) work_[i] = {};
+  for (const std::size_t i : world.busy)
     if (watched_[i]) watched_[group_[i]] = true;
-  std::fill(unbounded_.begin(), unbounded_.end(), false);
-  for (std::size_t i = 0; i < group_.size(); ++i)
+  for (const std::size_t i : world.busy) unbounded_[i] = false;
+  for (const std::size_t i : world.busy)
     if (exact.solved(i)) unbounded_[group_[i]] = true;
-  for (std::size_t i = 0; i < group_.size(); ++i) {
+  for (const std::size_t i : world.busy) {
     const Body& body = world.bodies[i];
     if (!watched_[group_[i]] || !world.moves(body) || exact.solved(i)) continue;
     work_[group_[i]] += world.is_implicit() ? contact_work_implicit(body.rigid, response.loads(i), world.dt)
                                             : contact_work_semi_implicit(body.rigid, response.loads(i), world.dt);
   }
-  for (std::size_t i = 0; i < group_.size(); ++i) {
+  for (const std::size_t i : world.busy) {
     if (group_[i] == i && watched_[i]) {
       scale_[i] = unbounded_[i] ? 1 : passive_scale(std::max(0.0, budget), work_[i]);
       VERISIM_ASSERT(is_fraction(scale_[i]));

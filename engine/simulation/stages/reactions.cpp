@@ -33,8 +33,7 @@ Wrench applied(const World& world, const SideOfLink& mine, const SideOfLink& the
 
 void Reactions::find(const World& world, const Contacts& contacts, const Response& response, const ExactResponse& exact,
                      const Motion& motion) {
-  for (std::size_t i = 0; i < on_body_.size(); ++i)
-    on_body_[i] = world.moves(world.bodies[i]) ? motion.work(i).contact : Wrench{};
+  for (const std::size_t i : world.busy) on_body_[i] = world.moves(world.bodies[i]) ? motion.work(i).contact : Wrench{};
   for (const std::size_t l : world.near_links) {
     const auto [i, j, number] = world.links[l];
     const Body& first = world.bodies[i];

@@ -28,7 +28,7 @@ bool is_explicit(const World& world, std::size_t l) {
 Response::Response(const World& world) : bodies_(world.bodies.size()) {}
 
 void Response::pull(const World& world) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (const std::size_t i : world.busy) {
     const Body& body = world.bodies[i];
     Loads& loads = bodies_[i].loads;
     loads.external = {};
@@ -43,7 +43,7 @@ void Response::pull(const World& world) {
 }
 
 void Response::prepare_bodies(const World& world, const Contacts& contacts) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (const std::size_t i : world.busy) {
     const bool touches = contacts.of_body(i) > 0;
     OfBody& of = bodies_[i];
     if (!touches && !of.touched) continue;  // all is zero as it was
@@ -64,7 +64,8 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
     ++bodies_[world.links[l].first].links_touching;
     ++bodies_[world.links[l].second].links_touching;
   }
-  for (OfBody& of : bodies_) {
+  for (const std::size_t i : world.busy) {
+    OfBody& of = bodies_[i];
     const double left = kStabilityBudget - (of.loads.coupling != nullptr ? of.loads.coupling->budget_used : 0);
     VERISIM_ASSERT(left > 0);
     if (of.links_touching > 0) of.link_body.budget = left / of.links_touching;

@@ -2,6 +2,7 @@
 // read it through its functions. Simulation::step calls them in their order.
 #pragma once
 
+#include "engine/simulation/stages/busy.hpp"
 #include "engine/simulation/stages/contacts.hpp"
 #include "engine/simulation/stages/energy.hpp"
 #include "engine/simulation/stages/exact_response.hpp"
@@ -21,6 +22,7 @@ namespace verisim {
 struct Stages {
   Stages(const Scene& scene, const World& world)
       : grasping(scene.grasps, scene.grasp_distance),
+        busy(world),
         energy(world),
         contacts(world),
         response(world),
@@ -45,6 +47,7 @@ struct Stages {
   }
 
   Grasping grasping;
+  Busy busy;
   EnergyBook energy;
   Contacts contacts;
   PairMethods methods;

@@ -16,9 +16,9 @@ std::string text_of_fast(const World& world, const Note& note) {
 }  // namespace
 
 void Tunnelling::watch(const World& world, Notes& notes) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+  for (const std::size_t i : world.moving) {
     const Body& body = world.bodies[i];
-    if (told_[i] || !world.moves(body)) continue;
+    if (told_[i]) continue;
     const Vector3d& v = body.rigid.v_C;
     // Its thickness along v is this over |v|.
     const double thickness_v = (body.rigid.R_WB.conjugate() * v).cwiseAbs().dot(body.bounds_B.size());

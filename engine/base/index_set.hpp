@@ -1,0 +1,42 @@
+// A set of small numbers (bodies, links) that is filled anew in every frame and listed in ascending order, whatever
+// order they came in.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/error.hpp"
+
+namespace verisim {
+
+class IndexSet {
+ public:
+  /// Room for the numbers 0 to size - 1.
+  explicit IndexSet(std::size_t size = 0) : words_((size + kBits - 1) / kBits, 0) {}
+
+  /// @pre i is below the size
+  void add(std::size_t i) {
+    VERISIM_ASSERT(i / kBits < words_.size());
+    words_[i / kBits] |= std::uint64_t{1} << i % kBits;
+  }
+  /// @pre i is below the size
+  [[nodiscard]] bool has(std::size_t i) const {
+    VERISIM_ASSERT(i / kBits < words_.size());
+    return (words_[i / kBits] >> i % kBits & 1) != 0;
+  }
+  /// Appends all of them, ascending, and empties the set. Costs their number and a 64th of the size.
+  void move_to(std::vector<std::size_t>& list) {
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      for (; words_[w] != 0; words_[w] &= words_[w] - 1)
+        list.push_back(w * kBits + static_cast<std::size_t>(std::countr_zero(words_[w])));
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBits = 64;
+  std::vector<std::uint64_t> words_;
+};
+
+}  // namespace verisim
