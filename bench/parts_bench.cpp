@@ -50,7 +50,7 @@ bool same_work(const FrameCost& a, const FrameCost& b) {
 
 /// Argument: whether the others are fixed, or could be taken by a hand.
 void BM_ThreePartsOf200Move(benchmark::State& state) {
-  const std::size_t frames = smoke() ? 50 : 400;
+  const std::size_t frames = smoke() ? 250 : 400;  // the hands come down onto the plate within the first 200
   const std::vector<double> never(frames, std::numeric_limits<double>::infinity());
   Played alone{0, true, never};
   Played among{197, state.range(0) == 1, never};
@@ -69,7 +69,8 @@ void BM_ThreePartsOf200Move(benchmark::State& state) {
   state.counters["alone_us"] = alone.median();
   state.counters["among_200_us"] = among.median();
   at_most(state, "ratio", among.median() / alone.median(), 1.10);
-  if (!same || contacts == 0) wrong(state, "the three parts do not do the same in both scenes");
+  if (!same) wrong(state, "the three parts do not cost the same in both scenes");
+  if (contacts == 0) wrong(state, "nothing touches: the hands have not come down yet");
 }
 BENCHMARK(BM_ThreePartsOf200Move)->Arg(1)->Arg(0)->Iterations(smoke() ? 1 : 20)->Unit(benchmark::kMillisecond);
 
