@@ -1,5 +1,7 @@
 #include "firmware_sim/firmware/drive.hpp"
 
+#include "firmware_sim/firmware/arithmetic.hpp"
+
 namespace verisim {
 namespace firmware {
 
@@ -14,13 +16,8 @@ int32_t feed_forward(int32_t setpoint) {
   return setpoint * Drive::kFeedForward + (setpoint > 0 ? Drive::kBridgePwm : -Drive::kBridgePwm) * Pid::kOne;
 }
 
-int16_t rounded_pwm(int32_t output) {
-  const int32_t half = output < 0 ? -Pid::kOne / 2 : Pid::kOne / 2;
-  return static_cast<int16_t>((output + half) / Pid::kOne);
-}
-
 bool is_below(int32_t velocity, int32_t rpm) {
-  return velocity < rpm * kPerRpm && velocity > -rpm * kPerRpm;
+  return magnitude(velocity) < rpm * kPerRpm;
 }
 
 }  // namespace
@@ -34,7 +31,8 @@ int16_t Drive::update(const Encoder& encoder, uint16_t now_ms, int32_t setpoint)
     return 0;
   }
   const int32_t ahead = feed_forward(setpoint);
-  duty_ = rounded_pwm(ahead + pid_.update(setpoint, velocity_, -kLimit - ahead, kLimit - ahead));
+  duty_ = static_cast<int16_t>(
+      rounded(ahead + pid_.update(setpoint, velocity_, -kLimit - ahead, kLimit - ahead), Pid::kOne));
   return duty_;
 }
 

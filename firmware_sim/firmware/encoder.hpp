@@ -20,7 +20,7 @@ struct Encoder {
 
   void edge(uint8_t now, uint16_t at_ms, uint8_t at_tick) {
     const auto changed = static_cast<uint8_t>(levels ^ now);
-    const bool is_backward = ((levels ^ (now >> 1)) & 1) != 0;  // A before differs from B after
+    const bool is_backward = ((levels ^ static_cast<uint8_t>(now >> 1)) & 1) != 0;  // A before differs from B after
     levels = now;
     if (changed == 3) {
       ++illegal;

@@ -1,6 +1,6 @@
 #include "firmware_sim/firmware/firmware.hpp"
 
-#include "firmware_sim/firmware/interrupts.hpp"
+#include "firmware_sim/firmware/arithmetic.hpp"
 
 namespace verisim {
 namespace firmware {
@@ -8,7 +8,7 @@ namespace {
 
 /// RPM, rounded half away from zero, for a report.
 int16_t rpm_of(int32_t velocity) {
-  const int32_t rpm = (velocity + (velocity < 0 ? -kPerRpm / 2 : kPerRpm / 2)) / kPerRpm;
+  const int32_t rpm = rounded(velocity, kPerRpm);
   if (rpm > INT16_MAX) return INT16_MAX;
   return rpm < INT16_MIN ? static_cast<int16_t>(INT16_MIN) : static_cast<int16_t>(rpm);
 }
@@ -16,29 +16,17 @@ int16_t rpm_of(int32_t velocity) {
 }  // namespace
 
 bool Firmware::work() {
-  uint8_t until;
-  uint16_t now_ms;
-  {
-    const InterruptsOff alone;
-    until = heard_until_;
-    now_ms = now_ms_;
-  }
+  const uint8_t until = heard_until_;
   if (silent_ms_ < kWatchdogMs) ++silent_ms_;
   uint8_t byte;
   while (in_.take_before(until, byte)) {
     (void)receiver_.append(&byte, 1);
     (void)receiver_.process(*this);
   }
-  const bool is_sample = --to_sample_ms_ == 0;
-  if (is_sample) {
-    to_sample_ms_ = kSampleMs;
-    sample(now_ms);
-  }
-  if (--to_report_ms_ == 0) {
-    to_report_ms_ = kReportMs;
-    report();
-  }
-  return is_sample;
+  if (--to_work_ms_ != 0) return false;
+  to_work_ms_ = kSampleMs;
+  sample();
+  return true;
 }
 
 void Firmware::operator()(const protocol::XYFloatError& error) {
@@ -80,19 +68,15 @@ int32_t Firmware::setpoint_of(uint8_t wheel) const {
   return share_ == kStopSteps ? target_.wheels[wheel] : target_.wheels[wheel] * share_ / kStopSteps;
 }
 
-void Firmware::sample(uint16_t now_ms) {
+void Firmware::sample() {
   if (silent_ms_ >= kWatchdogMs && share_ > 0) --share_;
   bool contradicts = false;
   for (uint8_t wheel = 0; wheel < kWheels; ++wheel) {
-    Encoder encoder;
-    {
-      const InterruptsOff alone;
-      encoder = encoders_[wheel];
-    }
+    const Encoder& encoder = sampled_[wheel];  // the interrupt writes it again when this has long been done
     if (is_on_ && !is_at_fault_) {
-      duty_[wheel] = drives_[wheel].update(encoder, now_ms, setpoint_of(wheel));
+      duty_[wheel] = drives_[wheel].update(encoder, sampled_ms_, setpoint_of(wheel));
     } else {
-      drives_[wheel].idle(encoder, now_ms);
+      drives_[wheel].idle(encoder, sampled_ms_);
       duty_[wheel] = 0;
     }
     contradicts = contradicts || drives_[wheel].contradicts();
@@ -103,6 +87,8 @@ void Firmware::sample(uint16_t now_ms) {
 }
 
 void Firmware::report() {
+  if (--to_report_ms_ != 0) return;
+  to_report_ms_ = kReportMs;
   protocol::CurrentWheelSetpoints setpoints;
   protocol::CurrentWheelVelocities velocities;
   protocol::CurrentPWMOutput pwm;

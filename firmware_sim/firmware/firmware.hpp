@@ -38,10 +38,14 @@ class Firmware {
   /// A byte has arrived; false if there was no room for it.
   bool byte_arrived(uint8_t byte) { return in_.put(byte); }
 
-  /// A millisecond has begun. What has arrived before belongs to its work.
+  /// A millisecond has begun. What has arrived and what was counted before belongs to its work, however late that is.
   void tick() {
     now_ms_ = static_cast<uint16_t>(now_ms_ + 1);
     heard_until_ = in_.mark();
+    if (--to_sample_ms_ != 0) return;
+    to_sample_ms_ = kSampleMs;
+    sampled_ms_ = now_ms_;
+    for (uint8_t wheel = 0; wheel < kWheels; ++wheel) sampled_[wheel] = encoders_[wheel];
   }
 
   uint16_t now_ms() const { return now_ms_; }
@@ -52,9 +56,12 @@ class Firmware {
 
   // From the main loop ---------------------------------------------------------------------------------------------
 
-  /// The work of the millisecond that tick() has begun: commands, every kSampleMs the wheels, every kReportMs a report.
-  /// True if it was a sample: the motors' PWM is new.
+  /// The work of the millisecond that tick() has begun: commands, and every kSampleMs the wheels. True if it was a
+  /// sample: the motors' PWM is new.
   bool work();
+
+  /// To be called once a millisecond, when the motors have their PWM: sends a report if one is due.
+  void report();
 
   const int16_t (&duty() const)[kWheels] { return duty_; }
 
@@ -69,8 +76,7 @@ class Firmware {
  private:
   void command(int32_t vx, int32_t vy, int32_t omega);
   void command_for_error(const float& x, const float& y, const float& rotation);
-  void sample(uint16_t now_ms);
-  void report();
+  void sample();
   int32_t setpoint_of(uint8_t wheel) const;
   template <typename Report>
   void send(const Report& report);
@@ -82,10 +88,13 @@ class Firmware {
   Drive drives_[kWheels];
   Setpoints target_{{0, 0, 0, 0}};  ///< as commanded
   int16_t duty_[kWheels] = {0, 0, 0, 0};
-  uint16_t silent_ms_ = 0;  ///< since the last accepted command
+  uint16_t silent_ms_ = 0;    ///< since the last accepted command
+  Encoder sampled_[kWheels];  ///< as they were when the sample began
+  uint16_t sampled_ms_ = 0;
   volatile uint16_t now_ms_ = 0;
   volatile uint8_t heard_until_ = 0;
-  uint8_t to_sample_ms_ = kSampleMs;
+  uint8_t to_sample_ms_ = kSampleMs;  ///< of the interrupt
+  uint8_t to_work_ms_ = kSampleMs;    ///< of the main loop
   uint8_t to_report_ms_ = kReportMs;
   uint8_t share_ = kStopSteps;  ///< of the target that is in force, in kStopSteps: the watchdog takes it down
   bool is_on_ = false;

@@ -1,5 +1,7 @@
 #include "firmware_sim/firmware/mecanum.hpp"
 
+#include "firmware_sim/firmware/arithmetic.hpp"
+
 namespace verisim {
 namespace firmware {
 namespace {
@@ -9,15 +11,6 @@ constexpr uint32_t kGain = 5000;
 constexpr int32_t kRpmPerTenth = 20026;
 constexpr int32_t kFastest = kRpmMax * kPerRpm;
 constexpr int32_t kTenthsMax = 16383;  // times kFastest stays below 2^31
-
-int32_t magnitude(int32_t value) {
-  return value < 0 ? -value : value;
-}
-
-/// numerator / denominator, rounded half away from zero: alike for both directions.
-int32_t rounded(int32_t numerator, int32_t denominator) {
-  return (numerator + (numerator < 0 ? -denominator / 2 : denominator / 2)) / denominator;
-}
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "firmware_sim/firmware/velocity.hpp"
 
+#include "firmware_sim/firmware/arithmetic.hpp"
+
 namespace verisim {
 namespace firmware {
 namespace {
@@ -11,10 +13,6 @@ constexpr int16_t kCountsMax = 400;  // 400 in a sample are 50,000 RPM: no motor
 int16_t limited(int16_t counts) {
   if (counts > kCountsMax) return kCountsMax;
   return counts < -kCountsMax ? static_cast<int16_t>(-kCountsMax) : counts;
-}
-
-int32_t magnitude(int32_t value) {
-  return value < 0 ? -value : value;
 }
 
 int32_t velocity_of(int16_t counts, uint32_t ticks) {

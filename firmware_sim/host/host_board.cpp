@@ -115,7 +115,9 @@ class HostBoard final : public Board {
     firmware.tick();
     memory_->transmitter.wake(firmware);
     ++since_sample_ms_;
-    if (!firmware.work()) return;
+    const bool is_sample = firmware.work();
+    firmware.report();
+    if (!is_sample) return;
     const std::uint32_t period = since_sample_ms_ * kCyclesPerMs;
     if (has_sampled_) load_.control_period_min = load_.control_period_max = period;
     has_sampled_ = true;
