@@ -24,6 +24,10 @@ Plant::Plant(const PlantParameters& parameters)
       winding_{Winding(parameters.motor, parameters.bridge, h_), Winding(parameters.motor, parameters.bridge, h_),
                Winding(parameters.motor, parameters.bridge, h_), Winding(parameters.motor, parameters.bridge, h_)},
       encoder_{Encoder(0), Encoder(1), Encoder(2), Encoder(3)} {
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto [x, y] = wheel_place(parameters.geometry, i).p;
+    per_moment_[i] = {1 / (4 * x), 1 / (4 * y)};
+  }
   state_.load = loads({});
   state_.supply_voltage = parameters.supply.voltage;
   place({});
@@ -58,7 +62,6 @@ void Plant::set_encoder_fault(std::size_t wheel, EncoderFault fault) {
 PerWheel Plant::loads(const Reaction& reaction) {
   const auto [cx, cy] = parameters_.body.centre_of_mass;
   const double height = parameters_.body.height;
-  const double l = parameters_.geometry.half_base, w = parameters_.geometry.half_track;
   const Vector3d arm = reaction.point - Vector3d(cx, cy, height);
   const Vector3d moment = arm.cross(reaction.force) + reaction.torque;
   const double W = parameters_.body.mass * parameters_.gravity - reaction.force.z();
@@ -67,8 +70,7 @@ PerWheel Plant::loads(const Reaction& reaction) {
   PerWheel N;
   double carried = 0;
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto p = wheel_place(parameters_.geometry, i).p;
-    N[i] = std::max(W / 4 + p[0] * S_x / (4 * l * l) + p[1] * S_y / (4 * w * w), 0.0);
+    N[i] = std::max(W / 4 + per_moment_[i][0] * S_x + per_moment_[i][1] * S_y, 0.0);
     carried += N[i];
   }
   if (carried > W * (1 + 1e-12)) {
@@ -89,13 +91,14 @@ void Plant::substep(const PerWheel& duty, const Reaction& reaction, std::uint32_
   const Vector3d& f = reaction.force;
   const Vector3d wrench(f.x(), f.y(),
                         (reaction.point.x() - cx) * f.y() - (reaction.point.y() - cy) * f.x() + reaction.torque.z());
-  const std::array<WheelState, kWheels> before = base_.wheels();
+  PerWheel before;
+  for (std::size_t i = 0; i < kWheels; ++i) before[i] = base_.wheels()[i].motor_speed;
   base_.step(drive, state_.load, wrench);
   const auto cycles = kCyclesPerMillisecond / static_cast<std::uint32_t>(parameters_.substeps);
   double supply_current = 0;
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const double speed = base_.wheels()[i].motor_speed;
-    const WindingStep done = winding_[i].end((before[i].motor_speed + speed) / 2);
+    const double speed = (before[i] + base_.wheels()[i].motor_speed) / 2;
+    const WindingStep done = winding_[i].end(speed);
     supply_current += duty[i] * done.current;
     book_.windings += h_ * parameters_.motor.resistance * done.current_square;
     book_.bridges += h_ * (parameters_.bridge.drop * std::abs(done.current) +
@@ -109,10 +112,10 @@ void Plant::substep(const PerWheel& duty, const Reaction& reaction, std::uint32_
   state_.supply_voltage = voltage;
 }
 
-/// The step's way, along the coordinates in which its velocity is; then those turn. (1 - t^2, 2 t) / (1 + t^2) is a
+/// The step's way, along the coordinates in which its velocities are; then those turn. (1 - t^2, 2 t) / (1 + t^2) is a
 /// rotation to rounding, whatever t; its angle differs from h omega by (h omega)^3 / 12.
-void Plant::move(double& cosine, double& sine) {
-  const Vector3d way = h_ * base_.velocity();
+void Plant::move(const Vector3d& before, double& cosine, double& sine) {
+  const Vector3d way = h_ / 2 * (before + base_.velocity());
   x_ += cosine * way.x() - sine * way.y();
   y_ += sine * way.x() + cosine * way.y();
   theta_ += way.z();
@@ -137,8 +140,9 @@ std::span<const Edge> Plant::advance(const std::array<std::int16_t, kWheels>& du
   double cosine = pinned::cos(theta_), sine = pinned::sin(theta_);
   const auto substeps = static_cast<std::uint32_t>(parameters_.substeps);
   for (std::uint32_t k = 0; k < substeps; ++k) {
+    const Vector3d before = base_.velocity();
     substep(fraction, reaction, k * (kCyclesPerMillisecond / substeps));
-    move(cosine, sine);
+    move(before, cosine, sine);
   }
   publish();
   return edges_.all();
@@ -154,7 +158,7 @@ void Plant::publish() {
     const WheelState& wheel = base_.wheels()[i];
     state_.wheel_speed[i] = wheel.wheel_speed;
     state_.motor_speed[i] = wheel.motor_speed;
-    state_.slip[i] = wheel.slip;
+    state_.slip[i] = base_.forces()[i].slip;
     state_.current[i] = winding_[i].current();
     state_.counts[i] = encoder_[i].counts();
   }

@@ -87,11 +87,12 @@ class Plant {
  private:
   [[nodiscard]] PerWheel loads(const Reaction& reaction);
   void substep(const PerWheel& duty, const Reaction& reaction, std::uint32_t cycle);
-  void move(double& cosine, double& sine);
+  void move(const Vector3d& before, double& cosine, double& sine);
   void publish();
 
   PlantParameters parameters_;
   double h_;
+  std::array<std::array<double, 2>, kWheels> per_moment_;  ///< load of a wheel per S_x and S_y [1/m]
   RollingBase base_;
   std::array<Winding, kWheels> winding_;
   std::array<Encoder, kWheels> encoder_;

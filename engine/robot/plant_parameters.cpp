@@ -53,7 +53,7 @@ void check(const PlantParameters& p) {
   not_negative("resistance of the supply", p.supply.resistance);
   not_negative("gravity", p.gravity);
   if (p.substeps < 1 || kCyclesPerMillisecond % static_cast<std::uint32_t>(p.substeps) != 0)
-    fail(ErrorKind::usage, "robot: substeps is {} but must divide {}; 16 is usual", p.substeps, kCyclesPerMillisecond);
+    fail(ErrorKind::usage, "robot: substeps is {} but must divide {}; 8 is usual", p.substeps, kCyclesPerMillisecond);
 }
 
 }  // namespace verisim::robot

@@ -44,7 +44,7 @@ struct PlantParameters {
   BodyParameters body;
   SupplyParameters supply;
   double gravity = 9.81;  ///< [m/s^2]; 0: the wheels carry nothing and grip nothing, as on a stand
-  int substeps = 16;      ///< per millisecond: 62.5 us
+  int substeps = 8;       ///< per millisecond: 125 us
 };
 
 /// Error(usage) that names a figure out of range. On return the plant's contracts hold.

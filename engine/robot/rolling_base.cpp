@@ -98,13 +98,14 @@ void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerW
     Q *= e.inverse;
     if (e.inverse == 0) Q = catch_up;  // the motor stands, and so the wheel
     WheelState& now = wheel_[i];
-    now.force_along = -along;  // completed by follow, as the speeds are
-    now.force_across = -across;
+    WheelForces& forces = forces_[i];
+    forces.along = -along;  // completed by follow, as the speeds are
+    forces.across = -across;
     now.wheel_speed = Q;
     now.motor_speed = guess.flank == 0 ? (guess.motor == 0 ? 0 : motor / e.motor_term) : catch_up;
     b += e.q * Q - place_[i].along * along - place_[i].across * across;
   }
-  u_new_ = inverse_ * b;
+  u_new_ = inverse_.col(0) * b.x() + inverse_.col(1) * b.y() + inverse_.col(2) * b.z();
 }
 
 /// What the wheel does when the base moves as solved.
@@ -114,30 +115,32 @@ void RollingBase::follow(std::size_t i, const MotorDrive& drive, double load) {
   const Place& place = place_[i];
   const WheelState& old = before_[i];
   WheelState& now = wheel_[i];
+  WheelForces& forces = forces_[i];
   now.wheel_speed += e.inverse * e.q.dot(u_new_);
   if (guess.flank != 0)  // what solve left there is catch_up
     now.motor_speed = guess.motor == 0 ? 0 : gear_.ratio * (now.wheel_speed - now.motor_speed);
-  now.slip = place.along.dot(u_new_) - place.lever_along * now.wheel_speed;
-  now.roll = place.across.dot(u_new_) - place.lever_across * now.wheel_speed;
-  now.force_along -= e.holds_along * now.slip;
-  now.force_across -= e.holds_across * now.roll;
-  now.gear_torque = guess.flank == 0 ? 0
+  forces.slip = place.along.dot(u_new_) - place.lever_along * now.wheel_speed;
+  forces.roll = place.across.dot(u_new_) - place.lever_across * now.wheel_speed;
+  forces.along -= e.holds_along * forces.slip;
+  forces.across -= e.holds_across * forces.roll;
+  forces.gear_torque = guess.flank == 0 ? 0
                                      : parameters_.inertia / h_ * (now.wheel_speed - old.wheel_speed) +
-                                           place.lever_along * now.force_along + place.lever_across * now.force_across;
+                                           place.lever_along * forces.along + place.lever_across * forces.across;
   if (guess.motor == 0) {
-    now.gear_load = now.gear_torque / gear_.ratio;
-    now.motor_friction = now.gear_load - drive.torque.at_rest -
+    forces.gear_load = forces.gear_torque / gear_.ratio;
+    forces.motor_friction = forces.gear_load - drive.torque.at_rest -
                          (motor_inertia_ / h_ - drive.torque.per_speed / 2) * old.motor_speed;
   } else {
-    now.gear_load = guess.flank == 0 ? 0 : now.gear_torque / e.motor_weight;
-    now.motor_friction = -guess.motor * friction_bound(load);
+    forces.gear_load = guess.flank == 0 ? 0 : forces.gear_torque / e.motor_weight;
+    forces.motor_friction = -guess.motor * friction_bound(load);
   }
 }
 
 std::int8_t RollingBase::corrected_flank(std::size_t i) const {
   const Guess& guess = guess_[i];
   const WheelState& now = wheel_[i];
-  if (guess.flank != 0) return guess.flank * now.gear_torque < -kTorqueRounding ? std::int8_t{0} : guess.flank;
+  const WheelForces& forces = forces_[i];
+  if (guess.flank != 0) return guess.flank * forces.gear_torque < -kTorqueRounding ? std::int8_t{0} : guess.flank;
   const double gap = before_[i].gap + h_ * (now.motor_speed / gear_.ratio - now.wheel_speed);
   return std::abs(gap) > gear_.backlash / 2 + kGapRounding ? sign_of(gap) : std::int8_t{0};
 }
@@ -145,11 +148,12 @@ std::int8_t RollingBase::corrected_flank(std::size_t i) const {
 std::int8_t RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive, double load) const {
   const Guess& guess = guess_[i];
   const WheelState& now = wheel_[i];
+  const WheelForces& forces = forces_[i];
   if (drive.blocked) return 0;
   if (guess.motor != 0) return guess.motor * now.motor_speed < 0 ? std::int8_t{0} : guess.motor;
   // Friction must hold what drives the motor, against the gear's torque as driving or being driven would feel it.
-  const double driving = now.gear_load - now.motor_friction;
-  const double driven_load = now.gear_load * gear_.efficiency_driven, driving_load = now.gear_load / gear_.efficiency;
+  const double driving = forces.gear_load - forces.motor_friction;
+  const double driven_load = forces.gear_load * gear_.efficiency_driven, driving_load = forces.gear_load / gear_.efficiency;
   if (driving > std::max(driven_load, driving_load) + friction_bound(load)) return 1;
   if (driving < std::min(driven_load, driving_load) - friction_bound(load)) return -1;
   return 0;
@@ -157,7 +161,7 @@ std::int8_t RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive,
 
 RollingBase::Guess RollingBase::corrected(std::size_t i, const MotorDrive& drive, double load) const {
   const WheelState& old = before_[i];
-  const WheelState& now = wheel_[i];
+  const WheelForces& forces = forces_[i];
   const double hold = parameters_.stiffness * h_ + parameters_.damping;
   const auto slides = [&](double stretch, double slip, double bound) {
     const double force = -(parameters_.stiffness * stretch + hold * slip);
@@ -166,17 +170,18 @@ RollingBase::Guess RollingBase::corrected(std::size_t i, const MotorDrive& drive
   Guess guess = guess_[i];
   guess.motor = corrected_motor(i, drive, load);
   guess.flank = corrected_flank(i);
-  guess.along = slides(old.stretch_along, now.slip, parameters_.friction * load);
-  guess.across = slides(old.stretch_across, now.roll, parameters_.roller_resistance * load);
+  guess.along = slides(old.stretch_along, forces.slip, parameters_.friction * load);
+  guess.across = slides(old.stretch_across, forces.roll, parameters_.roller_resistance * load);
   return guess;
 }
 
 void RollingBase::finish(std::size_t i) {
   WheelState& now = wheel_[i];
+  const WheelForces& forces = forces_[i];
   const Guess& guess = guess_[i];
   const double k = parameters_.stiffness;
-  now.stretch_along = guess.along == 0 ? now.stretch_along + h_ * now.slip : -now.force_along / k;
-  now.stretch_across = guess.across == 0 ? now.stretch_across + h_ * now.roll : -now.force_across / k;
+  now.stretch_along = guess.along == 0 ? now.stretch_along + h_ * forces.slip : -forces.along / k;
+  now.stretch_across = guess.across == 0 ? now.stretch_across + h_ * forces.roll : -forces.across / k;
   now.gap = guess.flank == 0 ? now.gap + h_ * (now.motor_speed / gear_.ratio - now.wheel_speed)
                              : guess.flank * gear_.backlash / 2;
 }
@@ -185,6 +190,7 @@ void RollingBase::finish(std::size_t i) {
 void RollingBase::enter(std::size_t i, const WindingTorque& torque) {
   const WheelState& old = before_[i];
   const WheelState& now = wheel_[i];
+  const WheelForces& forces = forces_[i];
   const double motor = (old.motor_speed + now.motor_speed) / 2, wheel = (old.wheel_speed + now.wheel_speed) / 2;
   const Vector3d u = (u_ + u_new_) / 2;
   const double slip = place_[i].along.dot(u) - place_[i].lever_along * wheel;
@@ -192,9 +198,9 @@ void RollingBase::enter(std::size_t i, const WindingTorque& torque) {
   const double stored = now.stretch_along * now.stretch_along + now.stretch_across * now.stretch_across -
                         old.stretch_along * old.stretch_along - old.stretch_across * old.stretch_across;
   book_.motors += h_ * (torque.at_rest - torque.per_speed * motor) * motor;
-  book_.friction -= h_ * now.motor_friction * motor;
-  book_.gears += h_ * (now.gear_load * motor - now.gear_torque * wheel);
-  book_.floor -= h_ * (now.force_along * slip + now.force_across * roll) + parameters_.stiffness / 2 * stored;
+  book_.friction -= h_ * forces.motor_friction * motor;
+  book_.gears += h_ * (forces.gear_load * motor - forces.gear_torque * wheel);
+  book_.floor -= h_ * (forces.along * slip + forces.across * roll) + parameters_.stiffness / 2 * stored;
 }
 
 double RollingBase::kinetic_energy() const {
@@ -235,7 +241,7 @@ void RollingBase::step(const std::array<MotorDrive, kWheels>& drive, const PerWh
   for (std::size_t i = 0; i < kWheels; ++i) {
     finish(i);
     enter(i, drive[i].torque);
-    floor_force_ += place_[i].along * wheel_[i].force_along + place_[i].across * wheel_[i].force_across;
+    floor_force_ += place_[i].along * forces_[i].along + place_[i].across * forces_[i].across;
   }
   book_.outside += h_ * wrench.dot(u_ + u_new_) / 2;
   u_ = u_new_;

@@ -31,19 +31,23 @@ struct MotorDrive {
   bool blocked = false;  ///< the rotor cannot turn
 };
 
-/// State and forces of one wheel, its gear and its motor. Torques at the motor's or the wheel's side as named.
+/// State of one wheel, its gear and its motor.
 struct WheelState {
-  double motor_speed = 0;   ///< [rad/s]
-  double wheel_speed = 0;   ///< [rad/s]
-  double gap = 0;           ///< motor angle / ratio - wheel angle [rad], within half the backlash, to rounding
+  double motor_speed = 0;     ///< [rad/s]
+  double wheel_speed = 0;     ///< [rad/s]
+  double gap = 0;             ///< motor angle / ratio - wheel angle [rad], within half the backlash, to rounding
   double stretch_along = 0;   ///< z along a [m]
   double stretch_across = 0;  ///< z along t [m]
-  double force_along = 0;   ///< on the base, along a [N]
-  double force_across = 0;  ///< on the base, along t [N]
-  double slip = 0;          ///< s along a [m/s]
-  double roll = 0;          ///< s along t: how fast the roller's rim runs [m/s]
-  double gear_torque = 0;   ///< on the wheel [N m]
-  double gear_load = 0;     ///< of the gear on the motor [N m]
+};
+
+/// Velocities and forces that a step found, at one wheel.
+struct WheelForces {
+  double slip = 0;            ///< s along a [m/s]
+  double roll = 0;            ///< s along t: how fast the roller's rim runs [m/s]
+  double along = 0;           ///< force on the base, along a [N]
+  double across = 0;          ///< and along t [N]
+  double gear_torque = 0;     ///< on the wheel [N m]
+  double gear_load = 0;       ///< of the gear on the motor [N m]
   double motor_friction = 0;  ///< on the motor, also what blocks it [N m]
 };
 
@@ -66,6 +70,7 @@ class RollingBase {
   void step(const std::array<MotorDrive, kWheels>& drive, const PerWheel& load, const Vector3d& wrench);
 
   [[nodiscard]] const std::array<WheelState, kWheels>& wheels() const { return wheel_; }
+  [[nodiscard]] const std::array<WheelForces, kWheels>& forces() const { return forces_; }
   [[nodiscard]] const Vector3d& velocity() const { return u_; }            ///< of the centre of mass
   [[nodiscard]] const Vector3d& floor_force() const { return floor_force_; }  ///< of all wheels in the last step, about it
   [[nodiscard]] std::uint64_t unsettled() const { return unsettled_; }
@@ -119,6 +124,7 @@ class RollingBase {
   Vector3d mass_;  ///< m, m, I
   std::array<Place, kWheels> place_;
   std::array<WheelState, kWheels> before_, wheel_;  ///< as the step began; now
+  std::array<WheelForces, kWheels> forces_;
   std::array<Guess, kWheels> guess_, factorized_;
   std::array<Elimination, kWheels> eliminated_;
   Vector3d u_ = Vector3d::Zero(), floor_force_ = Vector3d::Zero();
