@@ -11,7 +11,7 @@ namespace verisim::robot {
 
 namespace {
 
-constexpr double kMillisecond = 0.001;
+constexpr double kHeadingStep = 0.001;  // s: one call
 
 const HeadingSettings& checked(const HeadingSettings& s) {
   const auto refuse = [](const char* what, double is, const char* range) {
@@ -50,13 +50,17 @@ Heading::Heading(const HeadingSettings& settings, double neutral)
 
 double Heading::advance(const TrackedBase& tracked, const std::optional<double>& sight) {
   is_on_ = settings_.p > 0 && tracked.age < settings_.lost_after;
+  ++since_ms_;
   if (!is_on_) return command_ = 0;
   if (!tracked.is_new) return command_;
+  const double since = std::min(static_cast<double>(since_ms_) * kHeadingStep, settings_.lost_after);
+  since_ms_ = 0;
   if (settings_.clearance > 0 && sight)
     desired_ = heading_clear_of_sight(tracked.pose.theta, *sight, neutral_, settings_.clearance);
   const double error = wrapped(desired_ - tracked.pose.theta);
   const double wanted = settings_.p * error + settings_.i * integral_;
   command_ = std::clamp(wanted, -settings_.omega_max, settings_.omega_max);
+  if (command_ == wanted) integral_ += error * since;
   return command_;
 }
 

@@ -52,6 +52,8 @@ void RobotServer::forget() {
   telemetry_ = {};
   has_heard_ = false;
   reaches_limit_ = false;
+  ignored_ms_ = obeyed_ms_ = 0;
+  attempts_ = 0;
 }
 
 void RobotServer::start() {
@@ -123,6 +125,23 @@ void RobotServer::put(const Message& message) {
   ++counts_.frames;
 }
 
+/// Counts how long the robot's setpoints have been 0 against the command.
+bool RobotServer::must_start_again() {
+  constexpr double kMoves = 0.02;  // rad/s of a wheel, 12 RPM of its motor: no rounding on the way makes 0 of it
+  constexpr std::uint64_t kObeyed = 2000;  // ms
+  double fastest = 0;
+  for (const double speed : wheel_speeds(settings_.geometry, in_force_)) fastest = std::max(fastest, std::abs(speed));
+  const bool is_told = fastest > kMoves && has_heard_ && now_ - heard_at_ < silence_ms_;
+  const bool stands = telemetry_.setpoint == std::array<std::int16_t, kWheels>{};
+  ignored_ms_ = is_told && stands ? ignored_ms_ + 1 : 0;
+  if (stands) obeyed_ms_ = 0;
+  if (!stands && ++obeyed_ms_ >= kObeyed) attempts_ = 0;
+  if (ignored_ms_ < start_ms_ || attempts_ >= settings_.start_attempts) return false;
+  ignored_ms_ = 0;
+  ++attempts_;
+  return true;
+}
+
 std::span<const std::uint8_t> RobotServer::advance() {
   out_count_ = 0;
   if (ends_) put(protocol::EndControl{});
@@ -132,9 +151,12 @@ std::span<const std::uint8_t> RobotServer::advance() {
     if (is_over) in_force_ = {};
     if (is_over && !expired_.is_on()) ++counts_.expired;
     const std::uint64_t age = now_ - started_at_;
-    if (age % start_ms_ == 0) put(protocol::StartControl{});
+    const bool starts = must_start_again() || age == 0;
+    if (starts) put(protocol::StartControl{});
+    counts_.starts += starts ? 1 : 0;
     if (age % send_ms_ == 0) put(Velocity{to_wire(in_force_.vx), to_wire(in_force_.vy), to_wire(in_force_.omega)});
     expired_.see(is_over, now_);
+    ignored_.see(ignored_ms_ >= start_ms_ || attempts_ > 0, now_);
     silent_.see(now_ - heard_at_ >= silence_ms_, now_);
     saturated_.see(reaches_limit_, now_);
   }
@@ -170,7 +192,7 @@ Telemetry RobotServer::telemetry() const {
 }
 
 void RobotServer::report(RobotNotes& notes) {
-  for (Spell* spell : {&running_, &refusing_, &expired_, &saturated_, &silent_}) spell->report(notes);
+  for (Spell* spell : {&running_, &refusing_, &expired_, &saturated_, &ignored_, &silent_}) spell->report(notes);
 }
 
 }  // namespace verisim::robot

@@ -9,7 +9,8 @@
 // it.
 // - It repeats the velocity at a fixed rate, so that the firmware's watchdog hears silence only if server or line are
 // dead.
-// - It repeats StartControl, so that a robot that was reset in mid-drive goes on.
+// - It sends StartControl again if the robot's setpoints stay 0 against the command, as after a reset. It does so a few
+//   times only, because a robot that has found a fault of its own (a stuck wheel) answers in the same way.
 // It can end at any time. kill() loses what a process loses: the velocity in force, a gain that was changed, half a
 // message, what the robot reported. start() begins anew with the gain of the settings, and telemetry fills up again.
 //
@@ -35,9 +36,10 @@ struct RobotServerSettings {
   double gain = 5;               ///< 1/s: velocity per error. The published default: 5000 wire units per m. 0 or above
   double send_period = 0.020;    ///< s: a velocity goes out this often. 0.001 to 1
   double watchdog = 0.250;       ///< s: how long a velocity stays in force without good input, as in the firmware
-  double start_period = 1;       ///< s: StartControl goes out this often
+  double start_period = 0.5;     ///< s: setpoints that are 0 for so long against the command ask for StartControl
+  int start_attempts = 3;        ///< so often in a row; a robot that then moves for 2 s has begun a new row
   double silence = 0.5;          ///< s: without a report from the robot, it is silent
-  double wheel_speed = 11.4537;  ///< rad/s: no wheel is asked for more. 7000 RPM at the motor through 64:1
+  double wheel_speed = 11.4537;  ///< rad/s: no wheel is asked for more. 7000 RPM / 64
   MecanumGeometry geometry = {};
 };
 
@@ -53,6 +55,7 @@ struct RobotServerCounts {
   std::uint64_t expired = 0;    ///< times that a velocity ended because no good one followed
   std::uint64_t frames = 0;     ///< sent
   std::uint64_t reports = 0;    ///< accepted from the robot
+  std::uint64_t starts = 0;     ///< StartControl sent
   std::uint64_t rejected = 0;   ///< beginnings of frames from the robot that were none
 };
 
@@ -94,6 +97,7 @@ class RobotServer {
   template <typename Message>
   void put(const Message& message);
   [[nodiscard]] bool is_expired(std::uint64_t since) const { return now_ - since >= watchdog_ms_; }
+  [[nodiscard]] bool must_start_again();
   void forget();
 
   RobotServerSettings settings_;
@@ -108,6 +112,8 @@ class RobotServer {
   Telemetry telemetry_{};
   std::uint64_t heard_at_ = 0;
   bool has_heard_ = false;
+  std::uint64_t ignored_ms_ = 0, obeyed_ms_ = 0;  ///< how long the robot has not, has taken up what it is told
+  int attempts_ = 0;
   std::array<std::uint8_t, 64> out_{};
   std::size_t out_count_ = 0;
   RobotServerCounts counts_;
@@ -116,6 +122,7 @@ class RobotServer {
   Spell expired_{"robot server", "has had no good command for the watchdog's time and stops the robot",
                  "has good commands again"};
   Spell saturated_{"robot server", "asks for all that the wheels can do", "asks for less than the wheels can do", 100};
+  Spell ignored_{"robot server", "is not obeyed: the robot was reset, or has found a fault", "is obeyed again"};
   Spell silent_{"robot server", "hears nothing from the robot", "hears the robot again"};
 };
 

@@ -15,19 +15,15 @@
 
 #include "engine/base/random.hpp"
 #include "engine/robot/notes.hpp"
+#include "firmware_sim/board.hpp"
 
 namespace verisim::robot {
 
-inline constexpr std::uint32_t kCyclesPerMillisecond = 16'000;
-
-/// A byte and when it is there: cycles of 16 MHz since the millisecond began.
-struct TimedByte {
-  std::uint32_t cycle;
-  std::uint8_t value;
-};
+using firmware::TimedByte;
+inline constexpr std::uint32_t kCyclesPerMillisecond = firmware::kCyclesPerMs;
 
 struct SerialLineSettings {
-  std::uint32_t baud = 115'200;           ///< bit/s of the sender: the published default. In [1200, 2000000]
+  std::uint32_t baud = 115'200;  ///< bit/s of the sender: the published default (a board: 117647). In [1200, 2000000]
   std::uint32_t receiver_baud = 115'200;  ///< bit/s of the receiver. In the same range
   double latency = 0.001;                 ///< s; USB bridges wait 1 to 16 ms, Bluetooth RFCOMM longer. At most 1
   double loss = 0;                        ///< fraction of bytes that never reach the wire

@@ -207,15 +207,6 @@ TEST(RobotServer, KilledSaysNothingAndStoppedSaysSo) {
   EXPECT_EQ(robot.ends, 1);
 }
 
-// The robot was reset: it waits for StartControl, which comes within a second.
-TEST(RobotServer, RepeatsStartControlEverySecond) {
-  RobotServer server({});
-  Robot robot;
-  server.start();
-  for (int ms = 0; ms < 5000; ++ms) drive(server, robot, 0, 0);
-  EXPECT_EQ(robot.starts, 5);
-}
-
 template <typename Message>
 std::vector<TimedByte> frame(const Message& message) {
   std::uint8_t bytes[64];
@@ -255,6 +246,50 @@ TEST(RobotServer, ReadsWhatTheRobotReports) {
   server.start();
   server.receive(frame(pwm));
   EXPECT_EQ(server.telemetry().pwm[0], 255) << "found again";
+}
+
+// The robot was reset in mid-drive: its setpoints are 0 and stay so until StartControl.
+TEST(RobotServer, StartsARobotAgainThatWasReset) {
+  RobotServer server({});
+  Robot robot;
+  server.start();
+  protocol::CurrentWheelSetpoints setpoints{{{500, 500, 500, 500}}};
+  for (int ms = 0; ms < 5000; ++ms) {
+    if (ms == 2000) setpoints = {};
+    if (robot.starts == 2) setpoints = {{{500, 500, 500, 500}}};
+    if (ms % 20 == 0) server.receive(frame(setpoints));
+    drive(server, robot, 0.02, 0);
+    EXPECT_EQ(robot.starts, ms < 2499 ? 1 : 2) << ms;
+  }
+  EXPECT_EQ(server.counts().starts, 2U);
+}
+
+// A stuck wheel: the firmware stops all four at once and does so again after every StartControl.
+TEST(RobotServer, StartsAFaultyRobotThreeTimesAndNoMore) {
+  RobotServer server({});
+  Robot robot;
+  RobotNotes notes;
+  server.start();
+  for (int ms = 0; ms < 20'000; ++ms) {
+    if (ms % 20 == 0) server.receive(frame(protocol::CurrentWheelSetpoints{}));
+    drive(server, robot, 0.02, 0);
+  }
+  EXPECT_EQ(robot.starts, 1 + 3);
+  server.report(notes);
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_STREQ(notes.begin()[1].text, "is not obeyed: the robot was reset, or has found a fault");
+}
+
+// A robot that stands because it is told to stand is no reason for StartControl.
+TEST(RobotServer, LetsARobotStandThatIsToldTo) {
+  RobotServer server({});
+  Robot robot;
+  server.start();
+  for (int ms = 0; ms < 5000; ++ms) {
+    if (ms % 20 == 0) server.receive(frame(protocol::CurrentWheelSetpoints{}));
+    drive(server, robot, 0, 0);
+  }
+  EXPECT_EQ(robot.starts, 1);
 }
 
 TEST(RobotServer, SaysThatItHearsNothingFromTheRobot) {
