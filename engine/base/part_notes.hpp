@@ -23,6 +23,7 @@ class PartNotes {
   }
   [[nodiscard]] const Note* begin() const { return notes_.data(); }
   [[nodiscard]] const Note* end() const { return notes_.data() + count_; }
+  [[nodiscard]] std::size_t size() const { return count_; }
   void clear() { count_ = 0; }
 
  private:

@@ -47,6 +47,8 @@ class BaseTracker {
   const TrackedBase& advance(const PlanarPose& pose);
   [[nodiscard]] const TrackedBase& tracked() const { return tracked_; }
 
+  /// From now on samples are lost, as long as it is hidden.
+  void hide(bool is_hidden) { is_hidden_ = is_hidden; }
   /// From now on samples have x for y and y for x; yaw stays, as where it is computed of another axis.
   void swap_axes(bool is_swapped) { is_swapped_ = is_swapped; }
 
@@ -70,7 +72,7 @@ class BaseTracker {
   std::size_t first_ = 0, count_ = 0;
   std::uint64_t now_ = 0, samples_ = 0, dropped_ = 0, measured_at_ = 0;
   double dropout_until_ = 0;  ///< s
-  bool is_swapped_ = false, has_report_ = false;
+  bool is_swapped_ = false, is_hidden_ = false, has_report_ = false;
   TrackedBase tracked_{};
   Spell seen_{"tracker", "follows the base", "has lost the base"};
 };

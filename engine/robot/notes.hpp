@@ -2,35 +2,13 @@
 // One call per millisecond of simulated time to everything; times are counted in such calls.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 
-#include "engine/base/error.hpp"
+#include "engine/base/part_notes.hpp"
 
 namespace verisim::robot {
 
-class RobotNotes {
- public:
-  static constexpr std::size_t kMax = 32;
-  struct Note {
-    const char* kind;
-    const char* text;  ///< behind the robot's name
-  };
-  /// @pre there are fewer than kMax: who reads them clears them once a millisecond
-  void add(const char* kind, const char* text) {
-    VERISIM_ASSERT(count_ < kMax);
-    notes_[count_++] = {kind, text};
-  }
-  [[nodiscard]] const Note* begin() const { return notes_.data(); }
-  [[nodiscard]] const Note* end() const { return notes_.data() + count_; }
-  [[nodiscard]] std::size_t size() const { return count_; }
-  void clear() { count_ = 0; }
-
- private:
-  std::array<Note, kMax> notes_{};
-  std::size_t count_ = 0;
-};
+using RobotNotes = PartNotes;
 
 /// Something that lasts. It is over when it was not seen for `hold_ms`, so that what flickers is said once.
 class Spell {

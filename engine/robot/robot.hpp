@@ -10,8 +10,10 @@
 // x forward, y left. Base B: the device's, as it is bolted to the robot: x along R's x, y up, z along R's -y. SI.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/base/companion.hpp"
@@ -22,7 +24,6 @@
 #include "engine/robot/plant.hpp"
 #include "engine/robot/robot_server.hpp"
 #include "engine/robot/serial_line.hpp"
-#include "engine/robot/slip_detector.hpp"
 #include "engine/robot/walls.hpp"
 #include "firmware_sim/board.hpp"
 
@@ -82,9 +83,9 @@ class Robot final : public Companion, public MovingBase {
  private:
   void millisecond();
   [[nodiscard]] PlanarTwist command();
-  [[nodiscard]] Reaction reaction_in_R() const;
-  [[nodiscard]] std::span<const firmware::EncoderEdge> edges(std::span<const Edge> found);
-  void place_device(double ahead);
+  void take_load();
+  void hear_tracker();
+  void place_device(double t);
 
   RobotSettings settings_;
   std::unique_ptr<firmware::Board> board_;
@@ -94,14 +95,14 @@ class Robot final : public Companion, public MovingBase {
   BaseTracker tracker_;
   BaseEstimate estimate_;
   DriveLaw drive_;
-  std::optional<Walls> walls_;
-  SlipDetector slip_;
+  std::optional<Walls> walls_;  ///< none: the room has no end
   std::function<std::optional<std::array<double, 2>>()> head_;
   std::uint64_t done_ = 0;  ///< ms
+  std::vector<firmware::EncoderEdge> edges_;  ///< of the last millisecond
   std::array<double, 2> error_D_{}, handle_D_{};
   Wrench load_B_;           ///< summed over the frames since the last millisecond
-  std::uint32_t loads_ = 0;
-  bool is_loaded_ = false;  ///< in this frame
+  std::uint32_t loads_ = 0;  ///< frames
+  Reaction reaction_;        ///< their mean
   PlanarTwist command_;
   Pose X_WB_, tracked_X_WB_;
   Vector3d limit_B_ = Vector3d::Zero();

@@ -115,7 +115,12 @@ void read_walls(lua_State* L, Fields& fields, RobotNode& node) {
   Fields walls(L, lua_gettop(L), fields.name_of("walls"));
   const auto min = walls.vector("min"), max = walls.vector("max");
   if (!min || !max) raise(L, "{} needs min and max: {{ min = {{x, y, z}}, max = {{x, y, z}} }}", fields.name_of("walls"));
-  node.settings.walls = robot::room_between(*min, *max);
+  robot::WallSettings room;
+  room.corners = robot::rectangle(min->x(), max->x(), -max->z(), -min->z());
+  room.radius = walls.positive("radius").value_or(room.radius);
+  room.margin = walls.not_negative("margin", room.margin);
+  room.force_max = walls.not_negative("force", room.force_max);
+  node.settings.walls = std::move(room);
   walls.finish(false);
   lua_pop(L, 1);
 }

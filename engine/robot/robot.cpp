@@ -1,0 +1,178 @@
+#include "engine/robot/robot.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
+
+namespace verisim::robot {
+namespace {
+
+constexpr double kMillisecond = 1e-3;     // s
+constexpr std::size_t kEdgesMax = 256;    // in a millisecond: Edges has room for as many
+
+/// To R of a vector in B.
+Vector3d in_R(const Vector3d& v_B) { return {v_B.x(), -v_B.z(), v_B.y()}; }
+
+DriveLawSettings without_neutral(DriveLawSettings drive) {
+  drive.neutral_D = {0, 0};  // the device's filter takes it off
+  return drive;
+}
+
+PlanarPose planar(const BaseEstimate::Place& place) { return {place[0], place[1], place[2]}; }
+BaseEstimate::Place place_of(const PlanarPose& pose) { return {pose.x, pose.y, pose.theta}; }
+
+}  // namespace
+
+Pose base_in_world(const PlanarPose& pose, const Vector3d& p_RB) {
+  const double c = pinned::cos(pose.theta), s = pinned::sin(pose.theta);
+  const double x = pose.x + c * p_RB.x() - s * p_RB.y(), y = pose.y + s * p_RB.x() + c * p_RB.y();
+  return {{x, p_RB.z(), -y}, rotation_from_vector({0, pose.theta, 0})};
+}
+
+Robot::Robot(RobotSettings settings, std::unique_ptr<firmware::Board> board)
+    : settings_(std::move(settings)),
+      board_(std::move(board)),
+      plant_(settings_.plant),
+      server_(settings_.server),
+      down_(settings_.line, settings_.seed, settings_.name + " to robot"),
+      up_(settings_.line, settings_.seed, settings_.name + " from robot"),
+      tracker_(settings_.tracker, settings_.seed, settings_.name + " tracker"),
+      estimate_(place_of(settings_.start), settings_.estimate),
+      drive_(without_neutral(settings_.drive)) {
+  VERISIM_ASSERT(board_ != nullptr);
+  if (settings_.walls) walls_.emplace(*settings_.walls);
+  edges_.reserve(kEdgesMax);
+  plant_.place(settings_.start);
+  server_.start();
+  place_device(0);
+}
+
+void Robot::follow(double error_x, double error_z, const Vector3d& p_BH) {
+  error_D_ = {error_x, -error_z};
+  handle_D_ = {p_BH.x(), -p_BH.z()};
+}
+
+void Robot::load(const Wrench& wrench) {
+  load_B_ += wrench;
+}
+
+void Robot::unplug(bool is_unplugged) {
+  down_.plug(!is_unplugged);
+  up_.plug(!is_unplugged);
+}
+
+void Robot::set_powered(bool on) {
+  board_->set_powered(on);
+  plant_.set_supplied(on);
+}
+
+void Robot::advance(double t) {
+  VERISIM_ASSERT(std::isfinite(t));
+  ++loads_;
+  const auto due = static_cast<std::uint64_t>(t / kMillisecond + 1e-6);
+  if (done_ < due) take_load();
+  for (; done_ < due; ++done_) millisecond();
+  estimate_.advance(t);
+  place_device(t);
+}
+
+void Robot::hear_tracker() {
+  const TrackedBase& tracked = tracker_.advance(plant_.state().pose);
+  const double now = static_cast<double>(done_ + 1) * kMillisecond;
+  if (tracked.is_new) estimate_.hear(place_of(tracked.pose), now - tracked.age);
+}
+
+PlanarTwist Robot::command() {
+  const TrackedBase& tracked = tracker_.tracked();
+  const std::array<double, 2> error_R = drive_.error_R(error_D_);
+  PlanarTwist wanted = server_.wanted(error_R[0], error_R[1]);
+  wanted = drive_.advance(wanted, tracked, handle_D_, head_ ? head_() : std::nullopt);
+  wanted = server_.within_reach(wanted);
+  if (!walls_) return wanted;
+  wanted = walls_->limit(wanted, tracked);
+  const std::array<double, 2> force = walls_->limit_force(error_R);
+  limit_B_ = {force[0], 0, -force[1]};
+  return wanted;
+}
+
+void Robot::take_load() {
+  const double each = 1.0 / std::exchange(loads_, 0);
+  reaction_ = {each * in_R(load_B_.force), each * in_R(load_B_.torque), settings_.device};
+  load_B_ = {};
+}
+
+void Robot::millisecond() {
+  hear_tracker();
+  command_ = command();
+  server_.command(command_);
+  drive_.commanded(server_.in_force(), tracker_.tracked());
+  down_.send(server_.advance());
+  board_->advance(edges_, down_.advance());
+  up_.send(board_->sent());
+  server_.receive(up_.advance());
+  edges_.clear();
+  for (const Edge& edge : plant_.advance(board_->duty(), reaction_))
+    edges_.push_back({edge.cycle, edge.wheel, edge.levels});
+}
+
+void Robot::place_device(double t) {
+  const PlantState& state = plant_.state();
+  const double ahead = t - static_cast<double>(done_) * kMillisecond;
+  const double c = pinned::cos(state.pose.theta), s = pinned::sin(state.pose.theta);
+  const PlanarTwist& v = state.twist;
+  const PlanarPose now{state.pose.x + ahead * (c * v.vx - s * v.vy), state.pose.y + ahead * (s * v.vx + c * v.vy),
+                       state.pose.theta + ahead * v.omega};
+  X_WB_ = base_in_world(now, settings_.device);
+  tracked_X_WB_ = base_in_world(planar(estimate_.place()), settings_.device);
+}
+
+void Robot::report(PartNotes& notes) {
+  server_.report(notes);
+  down_.report(notes);
+  up_.report(notes);
+  tracker_.report(notes);
+  drive_.report(notes);
+  if (walls_) walls_->report(notes);
+}
+
+void Robot::declare(Columns& columns) const {
+  const std::string state = "/state/robot/" + name() + "/", cost = "/cost/robot/" + name() + "/";
+  const auto three = [](const PlanarPose& p) { return std::array{p.x, p.y, p.theta}; };
+  columns.add(state + "pose", "m, m, rad", "middle of the wheels on the floor: x, y (the world's -z), heading",
+              [this, three] { return three(plant_.state().pose); });
+  columns.add(state + "tracked_pose", "m, m, rad", "the same, as the tracker and the estimate from it say",
+              [this] { return estimate_.place(); });
+  columns.add(state + "tracked", "1", "1: the tracker's last report is not too old",
+              [this] { return tracker_.tracked().is_valid; });
+  columns.add(state + "error", "m", "of the handle from its neutral place, times the device's gain; the robot's x and y",
+              [this] { return drive_.error_R(error_D_); });
+  columns.add(state + "command", "m/s, m/s, rad/s", "asked of the robot by its server; the robot's x, y, rotation",
+              [this] { return std::array{server_.in_force().vx, server_.in_force().vy, server_.in_force().omega}; });
+  columns.add(state + "setpoint", "rpm", "of the motors, as the robot reported last: FL, FR, RL, RR", [this] {
+    std::array<double, kWheels> all{};
+    for (std::size_t i = 0; i < kWheels; ++i) all[i] = server_.telemetry().setpoint[i];
+    return all;
+  });
+  columns.add(state + "wheel_velocity", "rad/s", "of the wheels: FL, FR, RL, RR",
+              [this] { return plant_.state().wheel_speed; });
+  columns.add(state + "pwm", "1", "what the motors are driven by, -255 to 255", [this] {
+    std::array<double, kWheels> all{};
+    for (std::size_t i = 0; i < kWheels; ++i) all[i] = board_->duty()[i];
+    return all;
+  });
+  columns.add(state + "encoder", "1", "counts of the motors' encoders, 3072 a turn of the wheel", [this] {
+    std::array<double, kWheels> all{};
+    for (std::size_t i = 0; i < kWheels; ++i) all[i] = static_cast<double>(plant_.state().counts[i]);
+    return all;
+  });
+  columns.add(state + "slip", "m/s", "of the roller on the floor along its axle", [this] { return plant_.state().slip; });
+  columns.add(state + "supply", "V", "of the battery under load", [this] { return plant_.state().supply_voltage; });
+  columns.add(cost + "busy_cycles", "1", "of the board's processor since the beginning; host: 0",
+              [this] { return board_->load().busy_cycles; });
+  columns.add(cost + "edges_lost", "1", "of the encoders, by the board's processor",
+              [this] { return board_->load().edges_lost; });
+}
+
+}  // namespace verisim::robot
