@@ -59,7 +59,7 @@ bool BaseTracker::is_dropped(std::uint64_t k) {
 
 void BaseTracker::take(const PlanarPose& pose) {
   const std::uint64_t k = samples_++;
-  if (is_dropped(k)) {
+  if (is_dropped(k) || is_hidden_) {
     ++dropped_;
     return;
   }

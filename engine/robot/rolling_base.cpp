@@ -19,6 +19,12 @@ std::int8_t sign_of(double x) {
   return x < 0 ? std::int8_t{-1} : std::int8_t{1};
 }
 
+/// Of the stretches.
+double squares(const WheelState& w) {
+  return w.stretch_along * w.stretch_along + w.stretch_across * w.stretch_across +
+         w.stretch_rolling * w.stretch_rolling;
+}
+
 }  // namespace
 
 RollingBase::RollingBase(const PlantParameters& parameters, double step)
@@ -44,11 +50,6 @@ double RollingBase::efficiency_factor(const Guess& guess) const {
   return guess.motor == guess.flank ? gear_.efficiency : 1 / gear_.efficiency_driven;
 }
 
-/// The motor's own dry friction, and the wheel's resistance to rolling as the motor feels it.
-double RollingBase::friction_bound(double load) const {
-  return motor_dry_friction_ + parameters_.rolling_resistance * load * wheel_radius_ / gear_.ratio;
-}
-
 void RollingBase::eliminate(std::size_t i, const MotorDrive& drive) {
   const Guess& guess = guess_[i];
   const Place& place = place_[i];
@@ -56,13 +57,15 @@ void RollingBase::eliminate(std::size_t i, const MotorDrive& drive) {
   const double hold = parameters_.stiffness * h_ + parameters_.damping;
   e.holds_along = guess.along == 0 ? hold : 0;
   e.holds_across = guess.across == 0 ? hold : 0;
+  e.holds_rolling = guess.rolling == 0 ? hold : 0;
   e.motor_term = motor_inertia_ / h_ + drive.torque.per_speed / 2;
   e.motor_weight = guess.flank == 0 ? 0 : gear_.ratio * efficiency_factor(guess);
   e.q = place.lever_along * e.holds_along * place.along + place.lever_across * e.holds_across * place.across;
   const bool is_held = guess.flank != 0 && guess.motor == 0;
   const double P = parameters_.inertia / h_ + e.motor_weight * gear_.ratio * e.motor_term +
                    place.lever_along * place.lever_along * e.holds_along +
-                   place.lever_across * place.lever_across * e.holds_across;
+                   place.lever_across * place.lever_across * e.holds_across +
+                   wheel_radius_ * wheel_radius_ * e.holds_rolling;
   e.inverse = is_held ? 0 : 1 / P;
 }
 
@@ -89,11 +92,13 @@ void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerW
                                           : -guess.along * parameters_.friction * load[i];
     const double across = guess.across == 0 ? parameters_.stiffness * old.stretch_across
                                             : -guess.across * parameters_.roller_resistance * load[i];
+    const double rolling = guess.rolling == 0 ? parameters_.stiffness * old.stretch_rolling
+                                              : -guess.rolling * parameters_.rolling_resistance * load[i];
     const double catch_up = guess.flank == 0 ? 0 : (old.gap - guess.flank * gear_.backlash / 2) / h_;
     const double motor = (motor_inertia_ / h_ - drive[i].torque.per_speed / 2) * old.motor_speed +
-                         drive[i].torque.at_rest - guess.motor * friction_bound(load[i]);
+                         drive[i].torque.at_rest - guess.motor * motor_dry_friction_;
     double Q = parameters_.inertia / h_ * old.wheel_speed + place_[i].lever_along * along +
-               place_[i].lever_across * across +
+               place_[i].lever_across * across - wheel_radius_ * rolling +
                e.motor_weight * (motor + e.motor_term * gear_.ratio * catch_up);
     Q *= e.inverse;
     if (e.inverse == 0) Q = catch_up;  // the motor stands, and so the wheel
@@ -101,6 +106,7 @@ void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerW
     WheelForces& forces = forces_[i];
     forces.along = -along;  // completed by follow, as the speeds are
     forces.across = -across;
+    forces.rolling = -rolling;
     now.wheel_speed = Q;
     now.motor_speed = guess.flank == 0 ? (guess.motor == 0 ? 0 : motor / e.motor_term) : catch_up;
     b += e.q * Q - place_[i].along * along - place_[i].across * across;
@@ -109,7 +115,7 @@ void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerW
 }
 
 /// What the wheel does when the base moves as solved.
-void RollingBase::follow(std::size_t i, const MotorDrive& drive, double load) {
+void RollingBase::follow(std::size_t i, const MotorDrive& drive) {
   const Guess& guess = guess_[i];
   const Elimination& e = eliminated_[i];
   const Place& place = place_[i];
@@ -123,16 +129,18 @@ void RollingBase::follow(std::size_t i, const MotorDrive& drive, double load) {
   forces.roll = place.across.dot(u_new_) - place.lever_across * now.wheel_speed;
   forces.along -= e.holds_along * forces.slip;
   forces.across -= e.holds_across * forces.roll;
+  forces.rolling -= e.holds_rolling * wheel_radius_ * now.wheel_speed;
   forces.gear_torque = guess.flank == 0 ? 0
                                      : parameters_.inertia / h_ * (now.wheel_speed - old.wheel_speed) +
-                                           place.lever_along * forces.along + place.lever_across * forces.across;
+                                           place.lever_along * forces.along + place.lever_across * forces.across -
+                                           wheel_radius_ * forces.rolling;
   if (guess.motor == 0) {
     forces.gear_load = forces.gear_torque / gear_.ratio;
     forces.motor_friction = forces.gear_load - drive.torque.at_rest -
                          (motor_inertia_ / h_ - drive.torque.per_speed / 2) * old.motor_speed;
   } else {
     forces.gear_load = guess.flank == 0 ? 0 : forces.gear_torque / e.motor_weight;
-    forces.motor_friction = -guess.motor * friction_bound(load);
+    forces.motor_friction = -guess.motor * motor_dry_friction_;
   }
 }
 
@@ -145,7 +153,7 @@ std::int8_t RollingBase::corrected_flank(std::size_t i) const {
   return std::abs(gap) > gear_.backlash / 2 + kGapRounding ? sign_of(gap) : std::int8_t{0};
 }
 
-std::int8_t RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive, double load) const {
+std::int8_t RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive) const {
   const Guess& guess = guess_[i];
   const WheelState& now = wheel_[i];
   const WheelForces& forces = forces_[i];
@@ -154,13 +162,14 @@ std::int8_t RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive,
   // Friction must hold what drives the motor, against the gear's torque as driving or being driven would feel it.
   const double driving = forces.gear_load - forces.motor_friction;
   const double driven_load = forces.gear_load * gear_.efficiency_driven, driving_load = forces.gear_load / gear_.efficiency;
-  if (driving > std::max(driven_load, driving_load) + friction_bound(load)) return 1;
-  if (driving < std::min(driven_load, driving_load) - friction_bound(load)) return -1;
+  if (driving > std::max(driven_load, driving_load) + motor_dry_friction_) return 1;
+  if (driving < std::min(driven_load, driving_load) - motor_dry_friction_) return -1;
   return 0;
 }
 
 RollingBase::Guess RollingBase::corrected(std::size_t i, const MotorDrive& drive, double load) const {
   const WheelState& old = before_[i];
+  const WheelState& now = wheel_[i];
   const WheelForces& forces = forces_[i];
   const double hold = parameters_.stiffness * h_ + parameters_.damping;
   const auto slides = [&](double stretch, double slip, double bound) {
@@ -168,10 +177,12 @@ RollingBase::Guess RollingBase::corrected(std::size_t i, const MotorDrive& drive
     return std::abs(force) < bound ? std::int8_t{0} : sign_of(force);
   };
   Guess guess = guess_[i];
-  guess.motor = corrected_motor(i, drive, load);
+  guess.motor = corrected_motor(i, drive);
   guess.flank = corrected_flank(i);
   guess.along = slides(old.stretch_along, forces.slip, parameters_.friction * load);
   guess.across = slides(old.stretch_across, forces.roll, parameters_.roller_resistance * load);
+  guess.rolling =
+      slides(old.stretch_rolling, wheel_radius_ * now.wheel_speed, parameters_.rolling_resistance * load);
   return guess;
 }
 
@@ -182,6 +193,8 @@ void RollingBase::finish(std::size_t i) {
   const double k = parameters_.stiffness;
   now.stretch_along = guess.along == 0 ? now.stretch_along + h_ * forces.slip : -forces.along / k;
   now.stretch_across = guess.across == 0 ? now.stretch_across + h_ * forces.roll : -forces.across / k;
+  now.stretch_rolling =
+      guess.rolling == 0 ? now.stretch_rolling + h_ * wheel_radius_ * now.wheel_speed : -forces.rolling / k;
   now.gap = guess.flank == 0 ? now.gap + h_ * (now.motor_speed / gear_.ratio - now.wheel_speed)
                              : guess.flank * gear_.backlash / 2;
 }
@@ -195,12 +208,11 @@ void RollingBase::enter(std::size_t i, const WindingTorque& torque) {
   const Vector3d u = (u_ + u_new_) / 2;
   const double slip = place_[i].along.dot(u) - place_[i].lever_along * wheel;
   const double roll = place_[i].across.dot(u) - place_[i].lever_across * wheel;
-  const double stored = now.stretch_along * now.stretch_along + now.stretch_across * now.stretch_across -
-                        old.stretch_along * old.stretch_along - old.stretch_across * old.stretch_across;
   book_.motors += h_ * (torque.at_rest - torque.per_speed * motor) * motor;
   book_.friction -= h_ * forces.motor_friction * motor;
   book_.gears += h_ * (forces.gear_load * motor - forces.gear_torque * wheel);
-  book_.floor -= h_ * (forces.along * slip + forces.across * roll) + parameters_.stiffness / 2 * stored;
+  book_.floor -= h_ * (forces.along * slip + forces.across * roll + forces.rolling * wheel_radius_ * wheel) +
+                 parameters_.stiffness / 2 * (squares(now) - squares(old));
 }
 
 double RollingBase::kinetic_energy() const {
@@ -211,10 +223,9 @@ double RollingBase::kinetic_energy() const {
 }
 
 double RollingBase::stored_energy() const {
-  double squares = 0;
-  for (const WheelState& w : wheel_)
-    squares += w.stretch_along * w.stretch_along + w.stretch_across * w.stretch_across;
-  return parameters_.stiffness / 2 * squares;
+  double sum = 0;
+  for (const WheelState& w : wheel_) sum += squares(w);
+  return parameters_.stiffness / 2 * sum;
 }
 
 void RollingBase::step(const std::array<MotorDrive, kWheels>& drive, const PerWheel& load, const Vector3d& wrench) {
@@ -230,7 +241,7 @@ void RollingBase::step(const std::array<MotorDrive, kWheels>& drive, const PerWh
     solve(drive, load, wrench);
     std::array<Guess, kWheels> corrected_guess;
     for (std::size_t i = 0; i < kWheels; ++i) {
-      follow(i, drive[i], load[i]);
+      follow(i, drive[i]);
       corrected_guess[i] = corrected(i, drive[i], load[i]);
     }
     settled = corrected_guess == guess_;

@@ -3,10 +3,12 @@
 // plant_parameters.hpp. Robot coordinates R; the base's velocity u = (vx, vy, omega) is that of its centre of mass.
 //
 // Wheel i touches the floor with one roller. a: unit vector along the roller's axle, t: across it. The roller's rubber
-// slides along a against friction mu N, and turns on its axle, along t, against c N. Both are the same law: a spring and a
-// damper that yield at a bound. Nothing creeps at rest, and who carries how much of a load is decided by the springs.
+// slides along a against friction mu N, and turns on its axle, along t, against c N. A wheel rolls against a torque
+// c_w N r. All three are the same law: a spring and a damper that yield at a bound. Nothing creeps at rest, and who carries
+// how much of a load is decided by the springs.
 //
 //   slip  s = J u - r a_x w_wheel       J = (a_x, a_y, (p - c) x a)        force on the base  f = -(k z + d s), |f| <= bound
+//   rolling: at the wheel alone, torque -r (k z + d r w_wheel), z a length of the rim
 //
 // Gear: a rigid gap. Within it motor and wheel turn apart; at a flank they turn together, and meet without rebound.
 // Its losses are a factor e between torques, that of driving or of being driven. The motor's dry friction holds it at rest.
@@ -38,6 +40,7 @@ struct WheelState {
   double gap = 0;             ///< motor angle / ratio - wheel angle [rad], within half the backlash, to rounding
   double stretch_along = 0;   ///< z along a [m]
   double stretch_across = 0;  ///< z along t [m]
+  double stretch_rolling = 0;  ///< z of rolling [m]
 };
 
 /// Velocities and forces that a step found, at one wheel.
@@ -46,6 +49,7 @@ struct WheelForces {
   double roll = 0;            ///< s along t: how fast the roller's rim runs [m/s]
   double along = 0;           ///< force on the base, along a [N]
   double across = 0;          ///< and along t [N]
+  double rolling = 0;         ///< resistance to rolling: torque on the wheel / r [N]
   double gear_torque = 0;     ///< on the wheel [N m]
   double gear_load = 0;       ///< of the gear on the motor [N m]
   double motor_friction = 0;  ///< on the motor, also what blocks it [N m]
@@ -55,9 +59,9 @@ struct WheelForces {
 struct MechanicalBook {
   double motors = 0;    ///< from the windings
   double outside = 0;   ///< from the wrench
-  double friction = 0;  ///< heat of the motors' and the wheels' dry friction
+  double friction = 0;  ///< heat of the motors' dry friction
   double gears = 0;     ///< heat of the gears, and of flanks that meet
-  double floor = 0;     ///< heat of rollers that slide, turn and are damped
+  double floor = 0;     ///< heat of wheels that roll, and of rollers that slide, turn and are damped
 };
 
 class RollingBase {
@@ -90,6 +94,7 @@ class RollingBase {
     std::int8_t flank = 0;   ///< sign of the torque on the wheel; 0: within the gap
     std::int8_t along = 0;   ///< sign of the force that slides; 0: it holds
     std::int8_t across = 0;
+    std::int8_t rolling = 0;
     bool conducts = false;   ///< torque falls with speed
     bool operator==(const Guess&) const = default;
   };
@@ -99,7 +104,7 @@ class RollingBase {
     double motor_weight = 0;  ///< ratio * e: torque of the motor as it arrives; 0: no flank
     double motor_term = 0;    ///< inertia / step + half of per_speed, motor side
     Vector3d q = Vector3d::Zero();
-    double holds_along = 0, holds_across = 0;  ///< k h + d, or 0 where it slides
+    double holds_along = 0, holds_across = 0, holds_rolling = 0;  ///< k h + d, or 0 where it slides
   };
   struct Place {
     Vector3d along, across;           ///< J
@@ -109,14 +114,13 @@ class RollingBase {
   void factorize(const std::array<MotorDrive, kWheels>& drive);
   void eliminate(std::size_t i, const MotorDrive& drive);
   void solve(const std::array<MotorDrive, kWheels>& drive, const PerWheel& load, const Vector3d& wrench);
-  void follow(std::size_t i, const MotorDrive& drive, double load);
+  void follow(std::size_t i, const MotorDrive& drive);
   [[nodiscard]] Guess corrected(std::size_t i, const MotorDrive& drive, double load) const;
   [[nodiscard]] std::int8_t corrected_flank(std::size_t i) const;
-  [[nodiscard]] std::int8_t corrected_motor(std::size_t i, const MotorDrive& drive, double load) const;
+  [[nodiscard]] std::int8_t corrected_motor(std::size_t i, const MotorDrive& drive) const;
   void finish(std::size_t i);
   void enter(std::size_t i, const WindingTorque& torque);
   [[nodiscard]] double efficiency_factor(const Guess& guess) const;
-  [[nodiscard]] double friction_bound(double load) const;
 
   WheelParameters parameters_;
   GearParameters gear_;
