@@ -16,6 +16,7 @@ constexpr std::uint64_t kRing = 4096;                      // ms of commands tha
 constexpr double kForget = 2.0;                            // s
 constexpr double kArm = 0.3;                               // m, Nexus: half base plus half track
 constexpr double kEnough = 0.05 * 0.05;                    // m^2
+constexpr double kTold = 0.005 * 0.005;                    // m^2 in a stride: above the tracker's noise
 constexpr double kFollows = 0.3, kTurnsBack = -0.5, kIdle = 0.1;
 
 std::uint64_t in_milliseconds(double lag) {
@@ -29,7 +30,8 @@ AxesCheck::AxesCheck(double lag) : lag_ms_(in_milliseconds(lag)), commanded_(kRi
 
 void AxesCheck::forget() {
   has_last_ = is_wrong_ = is_idle_ = false;
-  cross_ = commanded_squares_ = moved_squares_ = {};
+  cross_ = commanded_squares_ = {};
+  idle_squares_ = 0;
 }
 
 const PlanarPose& AxesCheck::commanded_at(std::uint64_t ms) const {
@@ -67,17 +69,21 @@ void AxesCheck::take_stride(const TrackedBase& tracked, std::uint64_t taken) {
   const std::array<double, 3> moved{c * dx + s * dy, -s * dx + c * dy, kArm * turn};
   const std::array<double, 3> told{to.x - from.x, to.y - from.y, kArm * (to.theta - from.theta)};
   const double kept = pinned::exp(-static_cast<double>(taken - last_taken_) / (1000 * kForget));
-  double all_moved = 0, all_told = 0;
+  double stride_moved = 0, stride_told = 0, all_told = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    cross_[i] = kept * cross_[i] + told[i] * moved[i];
-    commanded_squares_[i] = kept * commanded_squares_[i] + told[i] * told[i];
-    moved_squares_[i] = kept * moved_squares_[i] + moved[i] * moved[i];
-    all_moved += moved_squares_[i];
+    stride_moved += moved[i] * moved[i];
+    stride_told += told[i] * told[i];
+  }
+  const bool stands = stride_told > kTold && stride_moved < kIdle * stride_told;
+  idle_squares_ = kept * idle_squares_ + (stands ? stride_told : 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    cross_[i] = kept * cross_[i] + (stands ? 0 : told[i] * moved[i]);
+    commanded_squares_[i] = kept * commanded_squares_[i] + (stands ? 0 : told[i] * told[i]);
     all_told += commanded_squares_[i];
   }
-  is_idle_ = all_told > kEnough && all_moved < kIdle * all_told;
+  is_idle_ = idle_squares_ > kEnough && idle_squares_ > all_told;
   const std::array<double, 3> f = followed();  // comparisons with NaN are false
-  is_wrong_ = is_wrong_ || (!is_idle_ && (f[0] < kFollows || f[1] < kFollows || f[2] < kTurnsBack));
+  is_wrong_ = is_wrong_ || f[0] < kFollows || f[1] < kFollows || f[2] < kTurnsBack;
 }
 
 std::array<double, 3> AxesCheck::followed() const {

@@ -7,9 +7,10 @@
 // constant of 2 s, for each axis i of x, y and 0.3 m times yaw:
 //   followed_i = sum(commanded_i moved_i) / sum(commanded_i^2)        1: as told   0: not at all   below: the other way
 // The base is judged along an axis once sum(commanded_i^2) is above (0.05 m)^2, a third of a second at 0.3 m/s.
-//   wrong:   followed < 0.3 (yaw: < -0.5, because the user's torque turns the base too), though it moves
-//   idle:    sum(|moved|^2) < 0.1 sum(|commanded|^2) over all axes: it hardly moves. Motor power is off, or a wheel is
-//   stuck
+//   wrong:   followed < 0.3 (yaw: < -0.5, because the user's torque turns the base too)
+// A stride with |moved|^2 < 0.1 |commanded|^2 is left out of these sums. Where such strides outweigh the others the
+// base is
+//   idle:    it does not follow at all. Motor power is off, or a wheel is stuck
 // A motion along x = y is the same with swapped axes: that is not found, and does no harm while it lasts.
 // Robot coordinates R by the tracked yaw. No allocation after construction; a few ns in a millisecond without a report.
 #pragma once
@@ -44,7 +45,8 @@ class AxesCheck {
   std::vector<PlanarPose> commanded_;  ///< ring: the sum of what was commanded up to each millisecond, in R
   PlanarPose last_;                    ///< where the last stride ended
   bool has_last_ = false, is_wrong_ = false, is_idle_ = false;
-  std::array<double, 3> cross_{}, commanded_squares_{}, moved_squares_{};
+  std::array<double, 3> cross_{}, commanded_squares_{};
+  double idle_squares_ = 0;
 };
 
 }  // namespace verisim::robot

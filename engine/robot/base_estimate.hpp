@@ -11,6 +11,8 @@
 
 #include <array>
 
+#include "engine/robot/mecanum.hpp"
+
 namespace verisim::robot {
 
 struct EstimateParameters {
@@ -41,5 +43,7 @@ class BaseEstimate {
   double taken_ = 0, t_ = 0;  ///< s
   Place x_, v_{}, offset_{}, now_;
 };
+
+[[nodiscard]] inline BaseEstimate::Place place_of(const PlanarPose& pose) { return {pose.x, pose.y, pose.theta}; }
 
 }  // namespace verisim::robot

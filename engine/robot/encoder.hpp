@@ -11,17 +11,12 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/robot/clock.hpp"
+
 namespace verisim::robot {
 
 inline constexpr double kCountsPerTurn = 48;                 ///< of the motor
-inline constexpr std::uint32_t kCyclesPerMillisecond = 16000;
-
-/// A change of one of the two signals of an encoder.
-struct Edge {
-  std::uint32_t cycle = 0;  ///< after the millisecond began
-  std::uint8_t wheel = 0;
-  std::uint8_t levels = 0;  ///< after the edge: bit 0 A, bit 1 B
-};
+using Edge = firmware::EncoderEdge;
 
 enum class EncoderFault : std::uint8_t {
   none,

@@ -10,9 +10,7 @@
 namespace verisim::robot {
 namespace {
 
-constexpr double kMillisecond = 1e-3;  // s
 
-BaseEstimate::Place place_of(const PlanarPose& pose) { return {pose.x, pose.y, pose.theta}; }
 
 Counts rounded(const std::array<double, 4>& counts) {
   Counts whole{};

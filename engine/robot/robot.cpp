@@ -9,7 +9,6 @@
 namespace verisim::robot {
 namespace {
 
-constexpr double kMillisecond = 1e-3;     // s
 constexpr std::size_t kEdgesMax = 256;    // in a millisecond: Edges has room for as many
 
 /// To R of a vector in B.
@@ -21,7 +20,6 @@ DriveLawSettings without_neutral(DriveLawSettings drive) {
 }
 
 PlanarPose planar(const BaseEstimate::Place& place) { return {place[0], place[1], place[2]}; }
-BaseEstimate::Place place_of(const PlanarPose& pose) { return {pose.x, pose.y, pose.theta}; }
 
 }  // namespace
 
@@ -112,9 +110,8 @@ void Robot::millisecond() {
   board_->advance(edges_, down_.advance());
   up_.send(board_->sent());
   server_.receive(up_.advance());
-  edges_.clear();
-  for (const Edge& edge : plant_.advance(board_->duty(), reaction_))
-    edges_.push_back({edge.cycle, edge.wheel, edge.levels});
+  const std::span<const Edge> edges = plant_.advance(board_->duty(), reaction_);
+  edges_.assign(edges.begin(), edges.end());
 }
 
 void Robot::place_device(double t) {

@@ -20,6 +20,7 @@
 #include "engine/base/moving_base.hpp"
 #include "engine/robot/base_estimate.hpp"
 #include "engine/robot/base_tracker.hpp"
+#include "engine/robot/clock.hpp"
 #include "engine/robot/drive_law.hpp"
 #include "engine/robot/plant.hpp"
 #include "engine/robot/robot_server.hpp"

@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "engine/base/random.hpp"
+#include "engine/robot/clock.hpp"
 #include "engine/robot/notes.hpp"
 #include "firmware_sim/board.hpp"
 
 namespace verisim::robot {
 
 using firmware::TimedByte;
-inline constexpr std::uint32_t kCyclesPerMillisecond = firmware::kCyclesPerMs;
 
 struct SerialLineSettings {
   std::uint32_t baud = 115'200;  ///< bit/s of the sender: the published default (a board: 117647). In [1200, 2000000]

@@ -12,7 +12,7 @@ namespace verisim::robot {
 
 namespace {
 
-constexpr double kWallStep = 0.001;         // s: one call
+constexpr double kWallStep = 0.001;       // s: one call
 constexpr double kRounding = 0.001;       // m/s: half a mm/s in x and y, on the diagonal, is 0.71
 constexpr double kDirectionKnown = 0.7;   // rad
 constexpr std::uint64_t kHistory = 4096;  // ms
