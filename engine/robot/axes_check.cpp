@@ -38,15 +38,19 @@ const PlanarPose& AxesCheck::commanded_at(std::uint64_t ms) const {
   return commanded_[(ms < lag_ms_ ? 0 : ms - lag_ms_) % kRing];
 }
 
-void AxesCheck::advance(const PlanarTwist& command, const TrackedBase& tracked) {
-  VERISIM_ASSERT(std::isfinite(command.vx));
-  VERISIM_ASSERT(std::isfinite(command.vy));
-  VERISIM_ASSERT(std::isfinite(command.omega));
+void AxesCheck::advance(const std::optional<PlanarTwist>& command, const TrackedBase& tracked) {
   PlanarPose sum = commanded_[now_ % kRing];
   ++now_;
-  sum.x += command.vx * 0.001;
-  sum.y += command.vy * 0.001;
-  sum.theta += command.omega * 0.001;
+  if (command) {
+    VERISIM_ASSERT(std::isfinite(command->vx));
+    VERISIM_ASSERT(std::isfinite(command->vy));
+    VERISIM_ASSERT(std::isfinite(command->omega));
+    sum.x += command->vx * 0.001;
+    sum.y += command->vy * 0.001;
+    sum.theta += command->omega * 0.001;
+  } else {
+    unknown_until_ = now_ + lag_ms_;
+  }
   commanded_[now_ % kRing] = sum;
   if (!tracked.is_new) return;
   const auto age = static_cast<std::uint64_t>(std::llround(tracked.age * 1000));
@@ -54,7 +58,8 @@ void AxesCheck::advance(const PlanarTwist& command, const TrackedBase& tracked) 
   const std::uint64_t length = taken - last_taken_;
   if (has_last_ && length < kStride) return;
   const bool is_told = now_ - last_taken_ + lag_ms_ < kRing;  // what was commanded in it is still known
-  if (has_last_ && length <= kStrideMost && is_told) take_stride(tracked, taken);
+  const bool is_known = last_taken_ >= unknown_until_;
+  if (has_last_ && length <= kStrideMost && is_told && is_known) take_stride(tracked, taken);
   last_ = tracked.pose;
   last_taken_ = taken;
   has_last_ = true;

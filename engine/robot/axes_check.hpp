@@ -1,7 +1,8 @@
-// Does the base move as it is told? Compares the motion that was commanded with the motion that the tracker saw, each
-// axis of the robot for itself. A tracker whose axes are swapped, or whose yaw runs the other way, shows motion that
-// has nothing to do with the command, or opposes it: then heading and walls would steer wrongly, and the robot has to
-// stop.
+// Does the base move as it is told? Compares the motion that the robot says it was commanded (the setpoints that it
+// reports: a line that is cut or a watchdog that stopped it mislead nobody) with the motion that the tracker saw, each
+// axis of the robot for itself. Without reports nothing is compared. A tracker whose axes are swapped, or whose yaw
+// runs the other way, shows motion that has nothing to do with the command, or opposes it: then heading and walls would
+// steer wrongly, and the robot has to stop.
 //
 // A stride is the motion between two reports at least 0.1 s apart. Over strides, older ones forgotten with a time
 // constant of 2 s, for each axis i of x, y and 0.3 m times yaw:
@@ -17,6 +18,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/robot/base_tracker.hpp"
@@ -29,8 +31,9 @@ class AxesCheck {
   /// In [0, 1].
   explicit AxesCheck(double lag);
 
-  /// Takes one millisecond: the command in force in it [R], and what the tracker says. @pre command is finite
-  void advance(const PlanarTwist& command, const TrackedBase& tracked);
+  /// Takes one millisecond: the command that the robot has in force [R], if it is known, and what the tracker says.
+  /// @pre command is finite
+  void advance(const std::optional<PlanarTwist>& command, const TrackedBase& tracked);
   [[nodiscard]] bool is_wrong() const { return is_wrong_; }  ///< stays so until forget()
   [[nodiscard]] bool is_idle() const { return is_idle_; }
   /// Of x, y and yaw; NaN where too little was commanded to tell.
@@ -41,7 +44,7 @@ class AxesCheck {
   void take_stride(const TrackedBase& tracked, std::uint64_t taken);
   [[nodiscard]] const PlanarPose& commanded_at(std::uint64_t ms) const;
 
-  std::uint64_t lag_ms_, now_ = 0, last_taken_ = 0;
+  std::uint64_t lag_ms_, now_ = 0, last_taken_ = 0, unknown_until_ = 0;
   std::vector<PlanarPose> commanded_;  ///< ring: the sum of what was commanded up to each millisecond, in R
   PlanarPose last_;                    ///< where the last stride ended
   bool has_last_ = false, is_wrong_ = false, is_idle_ = false;

@@ -39,8 +39,11 @@ class DriveLaw {
   [[nodiscard]] PlanarTwist advance(const PlanarTwist& wanted, const TrackedBase& tracked,
                                     const std::array<double, 2>& p_D,
                                     const std::optional<std::array<double, 2>>& head_F);
-  /// What really went to the robot in this millisecond, after walls and limits: what its motion is held against.
-  void commanded(const PlanarTwist& command, const TrackedBase& tracked) { axes_.advance(command, tracked); }
+  /// What the robot has in force in this millisecond, as it reports it: what its motion is held against
+  /// (axes_check.hpp).
+  void in_force(const std::optional<PlanarTwist>& command, const TrackedBase& tracked) {
+    axes_.advance(command, tracked);
+  }
 
   /// The tracked motion was not the commanded one: it stands until restart(), because standing proves nothing.
   [[nodiscard]] bool is_stopped() const { return axes_.is_wrong(); }

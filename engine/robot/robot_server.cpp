@@ -6,6 +6,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 
 namespace verisim::robot {
 
@@ -189,6 +190,14 @@ Telemetry RobotServer::telemetry() const {
   Telemetry now = telemetry_;
   now.age = has_heard_ ? static_cast<double>(now_ - heard_at_) / 1000 : std::numeric_limits<double>::infinity();
   return now;
+}
+
+std::optional<PlanarTwist> RobotServer::reported_command() const {
+  constexpr double kPerRpm = pinned::kFullTurn / 60 / 64;  // rad/s of a wheel, through the gear
+  if (!has_heard_ || now_ - heard_at_ > 100) return {};
+  PerWheel speeds;
+  for (std::size_t i = 0; i < kWheels; ++i) speeds[i] = kPerRpm * telemetry_.setpoint[i];
+  return twist_of(settings_.geometry, speeds);
 }
 
 void RobotServer::report(RobotNotes& notes) {

@@ -19,6 +19,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "engine/robot/mecanum.hpp"
@@ -89,6 +90,9 @@ class RobotServer {
 
   [[nodiscard]] const PlanarTwist& in_force() const { return in_force_; }  ///< after limits, before rounding
   [[nodiscard]] Telemetry telemetry() const;
+  /// The velocity that the robot says it has in force: its setpoints, as motion without slip. Nothing: it has not said
+  /// so for 0.1 s.
+  [[nodiscard]] std::optional<PlanarTwist> reported_command() const;
   [[nodiscard]] const RobotServerCounts& counts() const { return counts_; }
   void report(RobotNotes& notes);
 

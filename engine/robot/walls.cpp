@@ -86,6 +86,16 @@ Walls::Walls(const WallSettings& settings)
   }
 }
 
+void Walls::forget() {
+  for (Wall& wall : walls_) {
+    wall.e = settings_.speed_max;
+    std::fill(wall.commands.begin(), wall.commands.end(), settings_.speed_max);
+    for (std::uint64_t ago = 0; ago < kHistory; ++ago)
+      wall.history[(now_ + kHistory - ago) % kHistory] =
+          wall.went - settings_.speed_max * kWallStep * static_cast<double>(ago);
+  }
+}
+
 double Walls::stop(double v) const {
   return v * (settings_.delay + kWallStep + settings_.lag) + v * v / (2 * settings_.deceleration);
 }
@@ -95,8 +105,8 @@ void Walls::measure(Wall& wall, const TrackedBase& tracked) const {
   wall.room = -std::numeric_limits<double>::infinity();
   wall.allowed = 0;
   if (!(age_ms + 1 < static_cast<double>(kHistory))) return;
-  const auto ago = std::min(now_, static_cast<std::uint64_t>(age_ms) + 1);
-  const double went = wall.went - wall.history[(now_ - ago) % kHistory];
+  const std::uint64_t ago = static_cast<std::uint64_t>(age_ms) + 1;
+  const double went = wall.went - wall.history[(now_ + kHistory - ago) % kHistory];
   wall.room =
       wall.d - wall.n[0] * tracked.pose.x - wall.n[1] * tracked.pose.y - settings_.radius - settings_.margin - went;
   if (wall.room <= 0 || stop(wall.e) > wall.room) return;

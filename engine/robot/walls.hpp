@@ -67,6 +67,10 @@ class Walls {
   /// @pre wanted is finite
   [[nodiscard]] PlanarTwist limit(const PlanarTwist& wanted, const TrackedBase& tracked);
 
+  /// What the base was told until now is not known, nor what it does: up to speed_max toward any wall, at any time
+  /// before.
+  void forget();
+
   /// The force on the hand [N, R] that takes the place of what the base may not follow: a spring from the handle
   /// towards the neutral point, along the normals of the walls that hold the base back, for error_R [m]. It grows from
   /// nothing as the wall takes hold, is stiffness x error at the wall, whatever the gain, and never more than

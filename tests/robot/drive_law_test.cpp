@@ -42,7 +42,7 @@ struct Rig {
     const TrackedBase& tracked = tracker.advance(pose);
     const double a = tracked.pose.theta, ca = std::cos(a), sa = std::sin(a);
     command = law.advance({ca * vx_F + sa * vy_F, -sa * vx_F + ca * vy_F, 0}, tracked, {0, -0.55}, {});
-    law.commanded(command, tracked);
+    law.in_force(command, tracked);
     const double share = is_powered ? 0.001 / 0.05 : 1;
     const PlanarTwist to = is_powered ? command : PlanarTwist();
     v.vx += (to.vx - v.vx) * share;
@@ -133,7 +133,7 @@ TEST(DriveLaw, StopsWhenYawRunsTheOtherWay) {
   for (; ms < 20'000 && !law.is_stopped(); ++ms) {
     const TrackedBase tracked{.pose = {0, 0, -theta}, .age = 0, .is_valid = true, .is_new = ms % 17 == 0};
     const PlanarTwist command = law.advance({}, tracked, {0, 0}, {});
-    law.commanded(command, tracked);
+    law.in_force(command, tracked);
     theta += command.omega * 0.001;
   }
   EXPECT_TRUE(law.is_stopped());
