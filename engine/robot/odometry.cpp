@@ -18,12 +18,13 @@ std::size_t periods(double time, double period) {
 
 }  // namespace
 
-// Below 1e-4 rad the next terms of the series are 1e-18 of the way.
+// Below 1e-8 rad the next terms of the series are 1e-17 of the way.
 PlanarPose moved(const PlanarPose& pose, const PlanarTwist& displacement) {
   const auto [dx, dy, turn] = displacement;
-  const bool is_small = std::abs(turn) < 1e-4;
-  const double along = is_small ? 1 - turn * turn / 6 : pinned::sin(turn) / turn;
-  const double across = is_small ? turn / 2 * (1 - turn * turn / 12) : (1 - pinned::cos(turn)) / turn;
+  const bool is_small = std::abs(turn) < 1e-8;
+  const double half = pinned::sin(turn / 2);
+  const double along = is_small ? 1 : pinned::sin(turn) / turn;
+  const double across = is_small ? turn / 2 : 2 * half * half / turn;  // (1 - cos turn) / turn
   const double x = along * dx - across * dy, y = across * dx + along * dy;
   const double c = pinned::cos(pose.theta), s = pinned::sin(pose.theta);
   return {pose.x + c * x - s * y, pose.y + s * x + c * y, pose.theta + turn};
