@@ -14,11 +14,6 @@ constexpr std::size_t kEdgesMax = 256;    // in a millisecond: Edges has room fo
 /// To R of a vector in B.
 Vector3d in_R(const Vector3d& v_B) { return {v_B.x(), -v_B.z(), v_B.y()}; }
 
-DriveLawSettings without_neutral(DriveLawSettings drive) {
-  drive.neutral_D = {0, 0};  // the device's filter takes it off
-  return drive;
-}
-
 PlanarPose planar(const BaseEstimate::Place& place) { return {place[0], place[1], place[2]}; }
 
 }  // namespace
@@ -33,23 +28,21 @@ Robot::Robot(RobotSettings settings, std::unique_ptr<firmware::Board> board)
     : settings_(std::move(settings)),
       board_(std::move(board)),
       plant_(settings_.plant),
-      server_(settings_.server),
       down_(settings_.line, settings_.seed, settings_.name + " to robot"),
       up_(settings_.line, settings_.seed, settings_.name + " from robot"),
       tracker_(settings_.tracker, settings_.seed, settings_.name + " tracker"),
       estimate_(place_of(settings_.start), settings_.estimate),
-      drive_(without_neutral(settings_.drive)) {
+      pilot_(settings_.pilot),
+      slip_({}, kCountsPerWheelTurn, kMillisecond) {
   VERISIM_ASSERT(board_ != nullptr);
-  if (settings_.walls) walls_.emplace(*settings_.walls);
   edges_.reserve(kEdgesMax);
   plant_.place(settings_.start);
-  server_.start();
+  pilot_.start();
   place_device(0);
 }
 
-void Robot::follow(double error_x, double error_z, const Vector3d& p_BH) {
+void Robot::follow(double error_x, double error_z, const Vector3d& /*p_BH*/) {
   error_D_ = {error_x, -error_z};
-  handle_D_ = {p_BH.x(), -p_BH.z()};
 }
 
 void Robot::load(const Wrench& wrench) {
@@ -82,19 +75,6 @@ void Robot::hear_tracker() {
   if (tracked.is_new) estimate_.hear(place_of(tracked.pose), now - tracked.age);
 }
 
-PlanarTwist Robot::command() {
-  const TrackedBase& tracked = tracker_.tracked();
-  const std::array<double, 2> error_R = drive_.error_R(error_D_);
-  PlanarTwist wanted = server_.wanted(error_R[0], error_R[1]);
-  wanted = drive_.advance(wanted, tracked, handle_D_, head_ ? head_() : std::nullopt);
-  wanted = server_.within_reach(wanted);
-  if (!walls_) return wanted;
-  wanted = walls_->limit(wanted, tracked);
-  const std::array<double, 2> force = walls_->limit_force(error_R);
-  limit_B_ = {force[0], 0, -force[1]};
-  return wanted;
-}
-
 void Robot::take_load() {
   const double each = 1.0 / std::exchange(loads_, 0);
   reaction_ = {each * in_R(load_B_.force), each * in_R(load_B_.torque), settings_.device};
@@ -103,15 +83,17 @@ void Robot::take_load() {
 
 void Robot::millisecond() {
   hear_tracker();
-  command_ = command();
-  server_.command(command_);
-  drive_.commanded(server_.in_force(), tracker_.tracked());
-  down_.send(server_.advance());
+  const auto& [neutral_x, neutral_y] = settings_.pilot.drive.neutral_D;
+  const std::array<double, 2> p_D{neutral_x + error_D_[0], neutral_y + error_D_[1]};
+  down_.send(pilot_.advance(p_D, head_ ? head_() : std::nullopt, tracker_.tracked()));
   board_->advance(edges_, down_.advance());
   up_.send(board_->sent());
-  server_.receive(up_.advance());
+  pilot_.receive(up_.advance());
   const std::span<const Edge> edges = plant_.advance(board_->duty(), reaction_);
   edges_.assign(edges.begin(), edges.end());
+  slipping_.see(slip_.advance(plant_.state().counts), done_);
+  const std::array<double, 2> limit_R = pilot_.limit_force_R();
+  limit_B_ = {limit_R[0], 0, -limit_R[1]};
 }
 
 void Robot::place_device(double t) {
@@ -126,12 +108,11 @@ void Robot::place_device(double t) {
 }
 
 void Robot::report(PartNotes& notes) {
-  server_.report(notes);
+  pilot_.report(notes);
   down_.report(notes);
   up_.report(notes);
   tracker_.report(notes);
-  drive_.report(notes);
-  if (walls_) walls_->report(notes);
+  slipping_.report(notes);
 }
 
 void Robot::declare(Columns& columns) const {
@@ -144,12 +125,12 @@ void Robot::declare(Columns& columns) const {
   columns.add(state + "tracked", "1", "1: the tracker's last report is not too old",
               [this] { return tracker_.tracked().is_valid; });
   columns.add(state + "error", "m", "of the handle from its neutral place, times the device's gain; the robot's x and y",
-              [this] { return drive_.error_R(error_D_); });
+              [this] { return pilot_.error_R(); });
   columns.add(state + "command", "m/s, m/s, rad/s", "asked of the robot by its server; the robot's x, y, rotation",
-              [this] { return std::array{server_.in_force().vx, server_.in_force().vy, server_.in_force().omega}; });
+              [this] { return std::array{pilot_.server().in_force().vx, pilot_.server().in_force().vy, pilot_.server().in_force().omega}; });
   columns.add(state + "setpoint", "rpm", "of the motors, as the robot reported last: FL, FR, RL, RR", [this] {
     std::array<double, kWheels> all{};
-    for (std::size_t i = 0; i < kWheels; ++i) all[i] = server_.telemetry().setpoint[i];
+    for (std::size_t i = 0; i < kWheels; ++i) all[i] = pilot_.server().telemetry().setpoint[i];
     return all;
   });
   columns.add(state + "wheel_velocity", "rad/s", "of the wheels: FL, FR, RL, RR",
@@ -164,7 +145,10 @@ void Robot::declare(Columns& columns) const {
     for (std::size_t i = 0; i < kWheels; ++i) all[i] = static_cast<double>(plant_.state().counts[i]);
     return all;
   });
-  columns.add(state + "slip", "m/s", "of the roller on the floor along its axle", [this] { return plant_.state().slip; });
+  columns.add(state + "slip", "m/s", "of each wheel's roller on the floor, along the roller's axle",
+              [this] { return plant_.state().slip; });
+  columns.add(state + "slips", "1", "1: the four wheels' speeds fit no motion of the base",
+              [this] { return slipping_.is_on(); });
   columns.add(state + "supply", "V", "of the battery under load", [this] { return plant_.state().supply_voltage; });
   columns.add(cost + "busy_cycles", "1", "of the board's processor since the beginning; host: 0",
               [this] { return board_->load().busy_cycles; });

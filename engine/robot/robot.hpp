@@ -21,11 +21,10 @@
 #include "engine/robot/base_estimate.hpp"
 #include "engine/robot/base_tracker.hpp"
 #include "engine/robot/clock.hpp"
-#include "engine/robot/drive_law.hpp"
+#include "engine/robot/odometry.hpp"
+#include "engine/robot/pilot.hpp"
 #include "engine/robot/plant.hpp"
-#include "engine/robot/robot_server.hpp"
 #include "engine/robot/serial_line.hpp"
-#include "engine/robot/walls.hpp"
 #include "firmware_sim/board.hpp"
 
 namespace verisim::robot {
@@ -38,12 +37,10 @@ struct RobotSettings {
   PlanarPose start;                ///< of the middle of the wheels, F
   Vector3d device{0, 0, 0.80};     ///< p_RB, m: where the device is bolted to its stand; a working height, estimated
   PlantParameters plant;
-  RobotServerSettings server;
+  PilotSettings pilot;             ///< server, drive law and walls; the neutral place is the device's filter's
   SerialLineSettings line;         ///< both directions
   BaseTrackerSettings tracker;
   EstimateParameters estimate;     ///< of where the base is now, of the tracker's reports
-  DriveLawSettings drive;
-  std::optional<WallSettings> walls;
   std::uint64_t seed = 1;
 };
 
@@ -72,10 +69,9 @@ class Robot final : public Companion, public MovingBase {
   void watch(std::function<std::optional<std::array<double, 2>>()> head) { head_ = std::move(head); }
 
   // What a script may do to it between frames: faults, and what an operator does at the console.
-  [[nodiscard]] RobotServer& server() { return server_; }
+  [[nodiscard]] Pilot& pilot() { return pilot_; }
   [[nodiscard]] Plant& plant() { return plant_; }
   [[nodiscard]] BaseTracker& tracker() { return tracker_; }
-  [[nodiscard]] DriveLaw& drive() { return drive_; }
   void unplug(bool is_unplugged);
   void reset_board() { board_->reset(); }
   void set_powered(bool on);  ///< board and motors
@@ -83,7 +79,6 @@ class Robot final : public Companion, public MovingBase {
 
  private:
   void millisecond();
-  [[nodiscard]] PlanarTwist command();
   void take_load();
   void hear_tracker();
   void place_device(double t);
@@ -91,22 +86,21 @@ class Robot final : public Companion, public MovingBase {
   RobotSettings settings_;
   std::unique_ptr<firmware::Board> board_;
   Plant plant_;
-  RobotServer server_;
   SerialLine down_, up_;  ///< to the robot, from it
   BaseTracker tracker_;
   BaseEstimate estimate_;
-  DriveLaw drive_;
-  std::optional<Walls> walls_;  ///< none: the room has no end
+  Pilot pilot_;
+  SlipDetector slip_;
   std::function<std::optional<std::array<double, 2>>()> head_;
   std::uint64_t done_ = 0;  ///< ms
   std::vector<firmware::EncoderEdge> edges_;  ///< of the last millisecond
-  std::array<double, 2> error_D_{}, handle_D_{};
+  std::array<double, 2> error_D_{};  ///< m
   Wrench load_B_;           ///< summed over the frames since the last millisecond
   std::uint32_t loads_ = 0;  ///< frames
   Reaction reaction_;        ///< their mean
-  PlanarTwist command_;
   Pose X_WB_, tracked_X_WB_;
   Vector3d limit_B_ = Vector3d::Zero();
+  Spell slipping_{"robot", "slips: its wheels turn as no motion of the base turns them", "rolls again"};
 };
 
 }  // namespace verisim::robot

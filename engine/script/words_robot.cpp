@@ -1,12 +1,11 @@
 // Robot: a mobile base that carries a haptic device; VRPNRemoteBase: what drives it.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "engine/base/own_file.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/device/mobile_base.hpp"
 #include "engine/record/trace.hpp"
+#include "engine/robot/boards.hpp"
 #include "engine/robot/recorded_base.hpp"
 #include "engine/script/robot_node.hpp"
 #include "engine/script/script_state.hpp"
@@ -33,21 +32,6 @@ robot::EncoderSamples read_encoder_samples(Inputs& inputs, const std::string& na
   return samples;
 }
 
-std::string avr_program() {
-  const std::filesystem::path folder = std::filesystem::path(own_file()).parent_path();
-  return (folder / "verisim-avr").string();
-}
-
-std::unique_ptr<firmware::Board> make_board(const std::string& board) {
-  if (board == "host") return firmware::make_host_board();
-  try {
-    return firmware::make_avr_board(avr_program());
-  } catch (const std::runtime_error& error) {
-    fail(ErrorKind::input, "{}: board = \"avr\": {}; board = \"host\" runs the same firmware as plain functions", kWord,
-         error.what());
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<MovingBase> RobotNode::base_of(Inputs& inputs, std::uint64_t seed) {
@@ -55,7 +39,7 @@ std::shared_ptr<MovingBase> RobotNode::base_of(Inputs& inputs, std::uint64_t see
   settings.name = name;
   settings.seed = seed;
   if (trace.empty()) {
-    robot = std::make_shared<robot::Robot>(settings, make_board(board));
+    robot = std::make_shared<robot::Robot>(settings, robot::make_board(board));
     companion = robot;
     base = robot;
   } else {
@@ -120,13 +104,13 @@ void read_walls(lua_State* L, Fields& fields, RobotNode& node) {
   room.radius = walls.positive("radius").value_or(room.radius);
   room.margin = walls.not_negative("margin", room.margin);
   room.force_max = walls.not_negative("force", room.force_max);
-  node.settings.walls = std::move(room);
+  node.settings.pilot.walls = std::move(room);
   walls.finish(false);
   lua_pop(L, 1);
 }
 
 void read_head(lua_State* L, Fields& fields, RobotNode& node) {
-  robot::HeadingSettings& heading = node.settings.drive.heading;
+  robot::HeadingSettings& heading = node.settings.pilot.drive.heading;
   if (!fields.boolean("holdHeading").value_or(true)) heading.p = 0;
   heading.clearance = at_most(L, fields, "sightClearance", heading.clearance, pinned::kPi / 2);
 }
@@ -134,7 +118,7 @@ void read_head(lua_State* L, Fields& fields, RobotNode& node) {
 void read_place(Fields& fields, RobotNode& node) {
   const Vector3d p = fields.vector("position").value_or(Vector3d::Zero());
   node.settings.start = {p.x(), -p.z(), fields.number("heading", 0)};
-  node.settings.drive.heading.desired = node.settings.start.theta;
+  node.settings.pilot.drive.heading.desired = node.settings.start.theta;
   const Vector3d B = fields.vector("device").value_or(Vector3d(0, node.settings.device.z(), 0));
   node.settings.device = {B.x(), -B.z(), B.y()};
 }
@@ -156,7 +140,7 @@ int robot_word(lua_State* L) {
     raise(L, "{}: board is '{}'{}", kWord, node->board, suggestion(node->board, {"host", "avr"}));
   read_place(fields, *node);
   robot::RobotSettings& settings = node->settings;
-  settings.server.gain = fields.not_negative("gain", kGainUnit * settings.server.gain) / kGainUnit;
+  settings.pilot.server.gain = fields.not_negative("gain", kGainUnit * settings.pilot.server.gain) / kGainUnit;
   settings.plant.supply.voltage = fields.positive("supply").value_or(settings.plant.supply.voltage);
   settings.plant.body.mass = fields.positive("mass").value_or(settings.plant.body.mass);
   read_line(fields, *node);
@@ -186,19 +170,19 @@ std::size_t wheel_at(lua_State* L, int index, const char* what) {
 }
 
 int kill_server(lua_State* L) {
-  running(L, *get<RobotPointer>(L, 1, "killServer: the robot"), "killServer").server().kill();
+  running(L, *get<RobotPointer>(L, 1, "killServer: the robot"), "killServer").pilot().kill();
   return 0;
 }
 
 int start_server(lua_State* L) {
-  running(L, *get<RobotPointer>(L, 1, "startServer: the robot"), "startServer").server().start();
+  running(L, *get<RobotPointer>(L, 1, "startServer: the robot"), "startServer").pilot().start();
   return 0;
 }
 
 int set_gain(lua_State* L) {
   const double gain = number_at(L, 2, "setGain: the gain");
   if (gain < 0) raise(L, "setGain: {:g} must not be negative", gain);
-  running(L, *get<RobotPointer>(L, 1, "setGain: the robot"), "setGain").server().set_gain(gain / kGainUnit);
+  running(L, *get<RobotPointer>(L, 1, "setGain: the robot"), "setGain").pilot().set_gain(gain / kGainUnit);
   return 0;
 }
 
