@@ -37,7 +37,7 @@ SerialLine::SerialLine(const SerialLineSettings& settings, std::uint64_t seed, s
       latency_(static_cast<std::uint64_t>(std::llround(settings.latency * 16e6)) * settings.baud),
       half_bit_(kBit * settings.baud / (2 * std::uint64_t{settings.receiver_baud})) {
   // Bytes at once in the ring: buffered, in the latency, of this millisecond, and under one byte of the receiver.
-  const std::uint64_t under_way = (latency_ + kCyclesPerMillisecond * unit_per_cycle_ + 20 * half_bit_) / kByte;
+  const std::uint64_t under_way = (latency_ + firmware::kCyclesPerMs * unit_per_cycle_ + 20 * half_bit_) / kByte;
   wave_.resize(settings.buffer + under_way + 4);
   received_.reserve(settings.receiver_baud / 9000 + 4);
 }
@@ -137,7 +137,7 @@ bool SerialLine::take_byte(std::uint64_t horizon) {
 
 std::span<const TimedByte> SerialLine::advance() {
   received_.clear();
-  const std::uint64_t horizon = now_ + kCyclesPerMillisecond * unit_per_cycle_;
+  const std::uint64_t horizon = now_ + firmware::kCyclesPerMs * unit_per_cycle_;
   while (take_byte(horizon)) {
   }
   now_ = horizon;

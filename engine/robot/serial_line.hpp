@@ -20,7 +20,6 @@
 namespace verisim::robot {
 
 using firmware::TimedByte;
-inline constexpr std::uint32_t kCyclesPerMillisecond = firmware::kCyclesPerMs;
 
 struct SerialLineSettings {
   std::uint32_t baud = 115'200;  ///< bit/s of the sender: the published default (a board: 117647). In [1200, 2000000]

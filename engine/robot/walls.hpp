@@ -92,6 +92,7 @@ class Walls {
     double room = 0;               ///< r
     double allowed = 0;            ///< m/s toward it
     double asked = 0;              ///< m/s toward it: what was wanted
+    double given = 0;              ///< and what was commanded
     std::vector<double> commands;  ///< ring: those of the last `delay`
     std::vector<double> history;   ///< ring: `went` of each millisecond
   };
