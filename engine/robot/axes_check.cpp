@@ -81,9 +81,11 @@ void AxesCheck::take_stride(const TrackedBase& tracked, std::uint64_t taken) {
   }
   const bool stands = stride_told > kTold && stride_moved < kIdle * stride_told;
   idle_squares_ = kept * idle_squares_ + (stands ? stride_told : 0);
+  const bool slips = std::abs(turn) > 1.5 * std::abs(to.theta - from.theta) + 0.02;
   for (std::size_t i = 0; i < 3; ++i) {
-    cross_[i] = kept * cross_[i] + (stands ? 0 : told[i] * moved[i]);
-    commanded_squares_[i] = kept * commanded_squares_[i] + (stands ? 0 : told[i] * told[i]);
+    const bool counts = !stands && !(i == 2 && slips);
+    cross_[i] = kept * cross_[i] + (counts ? told[i] * moved[i] : 0);
+    commanded_squares_[i] = kept * commanded_squares_[i] + (counts ? told[i] * told[i] : 0);
     all_told += commanded_squares_[i];
   }
   is_idle_ = idle_squares_ > kEnough && idle_squares_ > all_told;

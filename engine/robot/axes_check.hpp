@@ -12,6 +12,7 @@
 // A stride with |moved|^2 < 0.1 |commanded|^2 is left out of these sums. Where such strides outweigh the others the
 // base is
 //   idle:    it does not follow at all. Motor power is off, or a wheel is stuck
+// A stride that turns by more than 1.5 times what was commanded, and 0.02 rad, tells nothing about yaw: the base slips.
 // A motion along x = y is the same with swapped axes: that is not found, and does no harm while it lasts.
 // Robot coordinates R by the tracked yaw. No allocation after construction; a few ns in a millisecond without a report.
 #pragma once

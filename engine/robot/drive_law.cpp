@@ -54,7 +54,8 @@ PlanarTwist DriveLaw::advance(const PlanarTwist& wanted, const TrackedBase& trac
   }
   const double omega = heading_.advance(tracked, sight);
   const bool is_lost = tracked.age >= settings_.heading.lost_after;
-  lost_.see(is_lost, now_);
+  const bool had_time = static_cast<double>(now_) > 1000 * settings_.heading.lost_after;  // for a first report
+  lost_.see(is_lost && had_time, now_);
   wrong_.see(axes_.is_wrong(), now_);
   idle_.see(axes_.is_idle(), now_);
   ++now_;

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/base/pose.hpp"
 #include "engine/robot/base_tracker.hpp"
 
 namespace verisim::robot {

@@ -14,6 +14,19 @@ constexpr std::size_t kEdgesMax = 256;    // in a millisecond: Edges has room fo
 /// To R of a vector in B.
 Vector3d in_R(const Vector3d& v_B) { return {v_B.x(), -v_B.z(), v_B.y()}; }
 
+/// The board's divider makes another rate of the line's than its name says: 117,647 baud for 115,200.
+constexpr std::uint32_t kBoardBaud = 10 * firmware::kClockHz / firmware::kCyclesPerByte;
+
+SerialLineSettings to_board(SerialLineSettings line) {
+  line.receiver_baud = kBoardBaud;
+  return line;
+}
+SerialLineSettings from_board(SerialLineSettings line) {
+  line.receiver_baud = line.baud;
+  line.baud = kBoardBaud;
+  return line;
+}
+
 PlanarPose planar(const BaseEstimate::Place& place) { return {place[0], place[1], place[2]}; }
 
 }  // namespace
@@ -28,8 +41,8 @@ Robot::Robot(RobotSettings settings, std::unique_ptr<firmware::Board> board)
     : settings_(std::move(settings)),
       board_(std::move(board)),
       plant_(settings_.plant),
-      down_(settings_.line, settings_.seed, settings_.name + " to robot"),
-      up_(settings_.line, settings_.seed, settings_.name + " from robot"),
+      down_(to_board(settings_.line), settings_.seed, settings_.name + " to robot"),
+      up_(from_board(settings_.line), settings_.seed, settings_.name + " from robot"),
       tracker_(settings_.tracker, settings_.seed, settings_.name + " tracker"),
       estimate_(place_of(settings_.start), settings_.estimate),
       pilot_(settings_.pilot),

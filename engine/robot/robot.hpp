@@ -38,7 +38,7 @@ struct RobotSettings {
   Vector3d device{0, 0, 0.80};     ///< p_RB, m: where the device is bolted to its stand; a working height, estimated
   PlantParameters plant;
   PilotSettings pilot;             ///< server, drive law and walls; the neutral place is the device's filter's
-  SerialLineSettings line;         ///< both directions
+  SerialLineSettings line;         ///< both directions; `baud` is the host's, receiver_baud the board's own
   BaseTrackerSettings tracker;
   EstimateParameters estimate;     ///< of where the base is now, of the tracker's reports
   std::uint64_t seed = 1;

@@ -1,6 +1,7 @@
 #include "engine/robot/serial_line.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 
@@ -37,8 +38,8 @@ SerialLine::SerialLine(const SerialLineSettings& settings, std::uint64_t seed, s
       latency_(static_cast<std::uint64_t>(std::llround(settings.latency * 16e6)) * settings.baud),
       half_bit_(kBit * settings.baud / (2 * std::uint64_t{settings.receiver_baud})) {
   // Bytes at once in the ring: buffered, in the latency, of this millisecond, and under one byte of the receiver.
-  const std::uint64_t under_way = (latency_ + kCyclesPerMillisecond * unit_per_cycle_ + 20 * half_bit_) / kByte;
-  wave_.resize(settings.buffer + under_way + 4);
+  const std::uint64_t under_way = (latency_ + firmware::kCyclesPerMs * unit_per_cycle_ + 20 * half_bit_) / kByte;
+  wave_.resize(std::bit_ceil(settings.buffer + under_way + 4));
   received_.reserve(settings.receiver_baud / 9000 + 4);
 }
 
@@ -70,13 +71,13 @@ void SerialLine::put(std::uint64_t at, std::uint8_t value) {
       if (flips_.uniform(10 * number + i) < settings_.corruption) bits ^= 1U << i;
   if (bits != whole) ++counts_.damaged;
   VERISIM_ASSERT(count_ < wave_.size());
-  wave_[(first_ + count_++) % wave_.size()] = {start + latency_, bits};
+  wave_[(first_ + count_++) & (wave_.size() - 1)] = {start + latency_, bits};
 }
 
 void SerialLine::pop() {
   passed_until_ = sent(0).start + kByte;
   passed_low_ = (sent(0).bits & 0x200) == 0;
-  first_ = (first_ + 1) % wave_.size();
+  first_ = (first_ + 1) & (wave_.size() - 1);
   --count_;
 }
 
@@ -137,7 +138,7 @@ bool SerialLine::take_byte(std::uint64_t horizon) {
 
 std::span<const TimedByte> SerialLine::advance() {
   received_.clear();
-  const std::uint64_t horizon = now_ + kCyclesPerMillisecond * unit_per_cycle_;
+  const std::uint64_t horizon = now_ + firmware::kCyclesPerMs * unit_per_cycle_;
   while (take_byte(horizon)) {
   }
   now_ = horizon;

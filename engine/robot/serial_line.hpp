@@ -67,7 +67,7 @@ class SerialLine {
   };
   void put(std::uint64_t at, std::uint8_t value);
   void pop();
-  [[nodiscard]] const Sent& sent(std::size_t i) const { return wave_[(first_ + i) % wave_.size()]; }
+  [[nodiscard]] const Sent& sent(std::size_t i) const { return wave_[(first_ + i) & (wave_.size() - 1)]; }
   [[nodiscard]] bool find_edge(std::uint64_t& edge) const;
   [[nodiscard]] bool level(std::uint64_t at) const;
   [[nodiscard]] bool take_byte(std::uint64_t horizon);
@@ -76,7 +76,7 @@ class SerialLine {
   RandomStream losses_, flips_;
   std::uint64_t unit_per_cycle_, latency_, half_bit_;  ///< half_bit_: of the receiver
   std::uint64_t now_ = 0, free_ = 0;                   ///< begin of this millisecond; when the wire is free
-  std::vector<Sent> wave_;                             ///< ring: what the receiver has not passed yet
+  std::vector<Sent> wave_;                             ///< ring, a power of two: what the receiver has not passed yet
   std::size_t first_ = 0, count_ = 0;
   std::uint64_t passed_until_ = 0;  ///< end of the last byte that left the ring
   bool passed_low_ = false;         ///< and the level at its end

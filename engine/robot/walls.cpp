@@ -168,7 +168,8 @@ PlanarTwist Walls::limit(const PlanarTwist& wanted, const TrackedBase& tracked) 
   for (Wall& wall : walls_) {
     command(wall, moves ? dot(wall.n, v) + delta_ * length(v) + kRounding : 0);
     wall.history[(now_ + 1) % kHistory] = wall.went;
-    is_holding = is_holding || wall.asked > wall.allowed;
+    wall.given = std::max(0.0, dot(wall.n, v));
+    is_holding = is_holding || wall.given < wall.asked * (1 - 1e-9);
   }
   ++now_;
   limiting_.see(is_holding, now_);
@@ -182,8 +183,8 @@ Vector2 Walls::limit_force(const Vector2& error_R) const {
   Vector2 force{0, 0};
   for (const Wall& wall : walls_) {
     const double toward = dot(wall.n, error);
-    if (toward <= 0 || wall.asked <= wall.allowed) continue;
-    const double held = 1 - wall.allowed / wall.asked;  // the fraction of what was wanted that the wall forbids
+    if (toward <= 0 || wall.given >= wall.asked) continue;
+    const double held = 1 - wall.given / wall.asked;  // the fraction of what was wanted that the walls forbid
     for (std::size_t i = 0; i < 2; ++i) force[i] -= settings_.stiffness * held * toward * wall.n[i];
   }
   const double size = length(force);

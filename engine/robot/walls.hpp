@@ -4,25 +4,25 @@
 // sent"). Floor coordinates F, robot coordinates R, SI. One call per millisecond; no allocation after construction,
 // about 0.5 us.
 //
-// The bound. Let c(t) be the commanded velocity toward one wall and w(t) the base's. What is promised holds for a base
-// that
-//   (1) has in force a command that was given at most `delay` ago: server period, line, firmware period, frames lost;
-//   (2) slows down: toward any wall, while w > c in force, dw/dt <= -min(deceleration, (w - c) / lag); and does not
-//   pass c while it gains; (3) turns no faster than omega_max, and is measured within `margin` and `yaw_error`.
-// Then e(t), which follows the largest command of the last `delay` at once upwards and by (2) downwards, is never below
-// w. The room left in front of a wall is at least
+// The bound. Let c(t) be the commanded velocity toward one wall and w(t) the base's. The promise is for a base that
+//   (1) has in force a command that was given at most `delay` ago: server period, line, firmware period, lost frames;
+//   (2) slows down: while w > c in force, dw/dt <= -min(deceleration, (w - c) / lag); and gains no more than up to c;
+//   (3) turns no faster than omega_max, and is measured within `margin` and `yaw_error`.
+// Then e(t), which follows the largest command of the last `delay` at once upwards, and by (2) downwards, is never
+// below w. The room left in front of a wall is at least
 //   r = distance when measured - radius - margin - integral of e since then,
-// and whatever speed v is commanded now, if zero follows, the base goes at most
+// and after a command of v, if zero follows, the base goes at most
 //   stop(v) = v (delay + 1 ms + lag) + v^2 / (2 deceleration),   v = max(e, command).
 // Each millisecond one of two things is commanded: v with stop(max(e, v)) <= r, or 0 if stop(e) > r. The first is safe
 // by its inequality; the second because zero is what the millisecond before counted on. So by induction no wall is
 // touched, for any latency and any dropout: age enters r through the integral. What is commanded in the first case is
-//   v <= kappa r (and stop(v) <= r),   kappa = lambda (1 - lambda lag) exp(-lambda delay),   lambda = 1 / (delay + 1 ms
-//   + lag + speed_max / (2 deceleration)),
-// an exponential approach. With it e <= lambda r and stop(e) <= r all the time, so that 0 is needed only after a
-// dropout. While the base turns the direction of a command is known within delta = yaw_error + omega_max (age + delay +
-// 2 lag): a command counts at its worst within that, c = v.n + delta |v| + 1 mm/s for rounding, and |v| delta <= kappa
-// r.
+//   v <= kappa r and stop(v) <= r,   kappa = lambda (1 - lambda lag) exp(-lambda (delay + 1 ms)),
+//   lambda = 1 / (delay + 1 ms + lag + speed_max / (2 deceleration)),
+// an exponential approach: in a steady one e is lambda r and stop(e) at most r, so that 0 is needed after a dropout
+// only.
+//
+// While the base turns, the direction of a command is known within delta = yaw_error + omega_max (age + delay + 2 lag).
+// A command counts at its worst within that, and 1 mm/s more for rounding: c = v . n + delta |v| + 1 mm/s.
 //
 // A server that is killed leaves its command in force until the firmware's watchdog acts: `delay` has to hold that time
 // too (0.36 s: 250 ms, then to 0 within 200 ms) where walls shall hold then as well.
@@ -67,8 +67,7 @@ class Walls {
   /// @pre wanted is finite
   [[nodiscard]] PlanarTwist limit(const PlanarTwist& wanted, const TrackedBase& tracked);
 
-  /// What the base was told until now is not known, nor what it does: up to speed_max toward any wall, at any time
-  /// before.
+  /// What the base was told and did until now is not known: up to speed_max toward any wall is taken for granted.
   void forget();
 
   /// The force on the hand [N, R] that takes the place of what the base may not follow: a spring from the handle
@@ -92,6 +91,7 @@ class Walls {
     double room = 0;               ///< r
     double allowed = 0;            ///< m/s toward it
     double asked = 0;              ///< m/s toward it: what was wanted
+    double given = 0;              ///< and what was commanded
     std::vector<double> commands;  ///< ring: those of the last `delay`
     std::vector<double> history;   ///< ring: `went` of each millisecond
   };

@@ -13,7 +13,7 @@
 namespace verisim::robot::pilot_test {
 namespace {
 
-/// As firmware_sim/firmware/firmware.hpp states it: off until StartControl, watchdog of 250 ms, a report every 20 ms.
+/// As the firmware states it: off until StartControl, watchdog of 250 ms, a report every 20 ms.
 class Robot {
  public:
   void operator()(const protocol::StartControl& /*m*/) { is_on = true, silent_ms = 0, target = {}; }

@@ -23,7 +23,7 @@ struct Arrival {
 std::vector<Arrival> arrivals(SerialLine& line, std::uint64_t milliseconds) {
   std::vector<Arrival> all;
   for (std::uint64_t ms = 0; ms < milliseconds; ++ms)
-    for (const TimedByte& byte : line.advance()) all.push_back({ms * kCyclesPerMillisecond + byte.cycle, byte.value});
+    for (const TimedByte& byte : line.advance()) all.push_back({ms * firmware::kCyclesPerMs + byte.cycle, byte.value});
   return all;
 }
 
@@ -168,7 +168,7 @@ TEST(SerialLine, AnyTwoRatesGiveBytesOrCountedErrorsAndNoEnd) {
       std::uint32_t before = 0;
       for (const TimedByte& byte : line.advance()) {
         ASSERT_GE(byte.cycle, before);
-        ASSERT_LT(byte.cycle, kCyclesPerMillisecond);
+        ASSERT_LT(byte.cycle, firmware::kCyclesPerMs);
         before = byte.cycle;
       }
     }

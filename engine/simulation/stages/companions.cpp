@@ -3,7 +3,7 @@
 namespace verisim {
 namespace {
 
-std::string text_of_report(const World& world, const Note& note) {
+std::string text_of_companion(const World& world, const Note& note) {
   return world.companions[note.first]->name() + " " + note.detail;
 }
 
@@ -16,7 +16,7 @@ void advance_companions(World& world, Notes& notes) {
     reports.clear();
     world.companions[i]->report(reports);
     for (const PartNotes::Note& report : reports)
-      notes.add({.time = world.time(), .kind = report.kind, .text = text_of_report, .first = i, .detail = report.text});
+      notes.add({.time = world.time(), .kind = report.kind, .text = text_of_companion, .first = i, .detail = report.text});
   }
 }
 
