@@ -90,12 +90,12 @@ class RollingBase {
  private:
   /// What is guessed of a wheel: -1, 0, 1 each.
   struct Guess {
-    std::int8_t motor = 0;   ///< direction in which it turns; 0: friction holds it
-    std::int8_t flank = 0;   ///< sign of the torque on the wheel; 0: within the gap
-    std::int8_t along = 0;   ///< sign of the force that slides; 0: it holds
-    std::int8_t across = 0;
-    std::int8_t rolling = 0;
-    bool conducts = false;   ///< torque falls with speed
+    int motor = 0;           ///< direction in which it turns; 0: friction holds it
+    int flank = 0;           ///< sign of the torque on the wheel; 0: within the gap
+    int along = 0;           ///< sign of the force that slides; 0: it holds
+    int across = 0;
+    int rolling = 0;
+    int conducts = 0;        ///< 1: torque falls with speed
     bool operator==(const Guess&) const = default;
   };
   /// Of one wheel under a guess: (P) w_wheel = Q + q . u. What depends on the guess alone is kept.
@@ -103,6 +103,7 @@ class RollingBase {
     double inverse = 0;       ///< 1 / P; 0: the wheel is held by its motor
     double motor_weight = 0;  ///< ratio * e: torque of the motor as it arrives; 0: no flank
     double motor_term = 0;    ///< inertia / step + half of per_speed, motor side
+    double per_motor_weight = 0, per_motor_term = 0;
     Vector3d q = Vector3d::Zero();
     double holds_along = 0, holds_across = 0, holds_rolling = 0;  ///< k h + d, or 0 where it slides
   };
@@ -115,9 +116,9 @@ class RollingBase {
   void eliminate(std::size_t i, const MotorDrive& drive);
   void solve(const std::array<MotorDrive, kWheels>& drive, const PerWheel& load, const Vector3d& wrench);
   void follow(std::size_t i, const MotorDrive& drive);
-  [[nodiscard]] Guess corrected(std::size_t i, const MotorDrive& drive, double load) const;
-  [[nodiscard]] std::int8_t corrected_flank(std::size_t i) const;
-  [[nodiscard]] std::int8_t corrected_motor(std::size_t i, const MotorDrive& drive) const;
+  bool correct(std::size_t i, const MotorDrive& drive, double load);
+  [[nodiscard]] int corrected_flank(std::size_t i) const;
+  [[nodiscard]] int corrected_motor(std::size_t i, const MotorDrive& drive) const;
   void finish(std::size_t i);
   void enter(std::size_t i, const WindingTorque& torque);
   [[nodiscard]] double efficiency_factor(const Guess& guess) const;
@@ -125,7 +126,11 @@ class RollingBase {
   WheelParameters parameters_;
   GearParameters gear_;
   double motor_inertia_, motor_dry_friction_, wheel_radius_, h_;
-  Vector3d mass_;  ///< m, m, I
+  // Divided once: divisions would be a third of a step's time.
+  double per_h_, motor_inertia_per_h_, wheel_inertia_per_h_, per_ratio_, half_backlash_;
+  double hold_;  ///< force of a roller that holds, per velocity: k h + d
+  double per_stiffness_;
+  Vector3d mass_, mass_per_h_;  ///< m, m, I
   std::array<Place, kWheels> place_;
   std::array<WheelState, kWheels> before_, wheel_;  ///< as the step began; now
   std::array<WheelForces, kWheels> forces_;
