@@ -97,8 +97,8 @@ void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerW
     const Guess& guess = guess_[i];
     const Elimination& e = eliminated_[i];
     const WheelState& old = before_[i];
-    const double along = guess.along == 0 ? parameters_.stiffness * old.stretch_along
-                                          : -guess.along * parameters_.friction * load[i];
+    const double along =
+        guess.along == 0 ? parameters_.stiffness * old.stretch_along : -guess.along * parameters_.friction * load[i];
     const double across = guess.across == 0 ? parameters_.stiffness * old.stretch_across
                                             : -guess.across * parameters_.roller_resistance * load[i];
     const double rolling = guess.rolling == 0 ? parameters_.stiffness * old.stretch_rolling
@@ -140,13 +140,13 @@ void RollingBase::follow(std::size_t i, const MotorDrive& drive) {
   forces.across -= e.holds_across * forces.roll;
   forces.rolling -= e.holds_rolling * wheel_radius_ * now.wheel_speed;
   forces.gear_torque = guess.flank == 0 ? 0
-                                     : wheel_inertia_per_h_ * (now.wheel_speed - old.wheel_speed) +
-                                           place.lever_along * forces.along + place.lever_across * forces.across -
-                                           wheel_radius_ * forces.rolling;
+                                        : wheel_inertia_per_h_ * (now.wheel_speed - old.wheel_speed) +
+                                              place.lever_along * forces.along + place.lever_across * forces.across -
+                                              wheel_radius_ * forces.rolling;
   if (guess.motor == 0) {
     forces.gear_load = forces.gear_torque * per_ratio_;
-    forces.motor_friction = forces.gear_load - drive.torque.at_rest -
-                         (motor_inertia_per_h_ - drive.torque.per_speed / 2) * old.motor_speed;
+    forces.motor_friction =
+        forces.gear_load - drive.torque.at_rest - (motor_inertia_per_h_ - drive.torque.per_speed / 2) * old.motor_speed;
   } else {
     forces.gear_load = forces.gear_torque * e.per_motor_weight;
     forces.motor_friction = -guess.motor * motor_dry_friction_;
@@ -170,7 +170,8 @@ int RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive) const {
   if (guess.motor != 0) return guess.motor * now.motor_speed < 0 ? 0 : guess.motor;
   // Friction must hold what drives the motor, against the gear's torque as driving or being driven would feel it.
   const double driving = forces.gear_load - forces.motor_friction;
-  const double driven_load = forces.gear_load * gear_.efficiency_driven, driving_load = forces.gear_load / gear_.efficiency;
+  const double driven_load = forces.gear_load * gear_.efficiency_driven,
+               driving_load = forces.gear_load / gear_.efficiency;
   if (driving > std::max(driven_load, driving_load) + motor_dry_friction_) return 1;
   if (driving < std::min(driven_load, driving_load) - motor_dry_friction_) return -1;
   return 0;
@@ -207,10 +208,10 @@ void RollingBase::finish(std::size_t i) {
   const Guess& guess = factorized_[i];  // that of which the forces came, also where nothing settled
   now.stretch_along = guess.along == 0 ? now.stretch_along + h_ * forces.slip : -forces.along * per_stiffness_;
   now.stretch_across = guess.across == 0 ? now.stretch_across + h_ * forces.roll : -forces.across * per_stiffness_;
-  now.stretch_rolling =
-      guess.rolling == 0 ? now.stretch_rolling + h_ * wheel_radius_ * now.wheel_speed : -forces.rolling * per_stiffness_;
-  now.gap = guess.flank == 0 ? now.gap + h_ * (now.motor_speed * per_ratio_ - now.wheel_speed)
-                             : guess.flank * half_backlash_;
+  now.stretch_rolling = guess.rolling == 0 ? now.stretch_rolling + h_ * wheel_radius_ * now.wheel_speed
+                                           : -forces.rolling * per_stiffness_;
+  now.gap =
+      guess.flank == 0 ? now.gap + h_ * (now.motor_speed * per_ratio_ - now.wheel_speed) : guess.flank * half_backlash_;
 }
 
 /// Every force times the mean of the velocities before and after: that much the kinetic energies change, exactly.
