@@ -183,6 +183,13 @@ void add_synth(CLI::App& trace, int& exit_code) {
       if (end == value.c_str() || *end != '\0')
         fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
     }
+    std::vector<std::string> kinds = synthesizers();
+    kinds.emplace_back("encoder");
+    if (std::find(kinds.begin(), kinds.end(), o->kind) == kinds.end()) {
+      const std::string near = nearest_name(o->kind, kinds);
+      fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o->kind,
+           near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
+    }
     const bool is_drive = o->kind == "encoder";
     if (!is_drive && !o->path.empty())
       fail(ErrorKind::usage, "--path {}: '{}' has none; only encoder has", o->path, o->kind);
