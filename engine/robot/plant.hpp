@@ -10,7 +10,7 @@
 // the others carry its part in proportion. That the base then tips is not simulated; it is counted.
 //
 // First order in the substep: halving it moves a start, a stop or a curve by less than an encoder count (0.1 mm).
-// About 2.5 us a millisecond; no allocation; the same bits for the same calls.
+// About 2 us a millisecond; no allocation; the same bits for the same calls.
 #pragma once
 
 #include <array>

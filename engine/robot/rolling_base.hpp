@@ -17,7 +17,7 @@
 // Velocities are implicit (backward Euler, first order): all forces belong to the velocities at the step's end. Which
 // flank, who rests, who slides is found by trial: with a guess, all is linear; the wheels are eliminated, three
 // unknowns are left; what contradicts its guess corrects it. The guess is the last step's, and nearly always right;
-// then a step costs about 100 ns. A step whose guesses do not settle goes on with its last and is counted.
+// then a step costs about 150 ns. A step whose guesses do not settle goes on with its last and is counted.
 #pragma once
 
 #include <array>

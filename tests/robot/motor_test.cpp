@@ -40,7 +40,7 @@ TEST(Motor, RunsAt8100TurnsAMinuteWithoutLoad) {
 }
 
 // 101 rpm/mN m: with k_M, R: R / k_M^2. Load: the wheel's rolling resistance, r c N / ratio at the motor.
-TEST(Motor, LosesA101TurnsAMinutePerMillinewtonMetre) {
+TEST(Motor, Loses101TurnsAMinutePerMillinewtonMetre) {
   const auto speed = [](double rolling_resistance) {
     PlantParameters p = plants::without_losses();
     p.wheel.rolling_resistance = rolling_resistance;

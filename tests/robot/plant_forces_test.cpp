@@ -234,6 +234,19 @@ TEST(PlantFaults, StopsWithoutSupplyAndGoesOnWithIt) {
   EXPECT_LT(plant.state().twist.vx, 0.2);
 }
 
+TEST(PlantFaults, OneEncoderIsDeadAndOneCountsBackwardsWhileTheRobotDrivesOn) {
+  Plant whole(PlantParameters{}), faulty(PlantParameters{});
+  faulty.set_encoder_fault(kFrontRight, EncoderFault::dead);
+  faulty.set_encoder_fault(kRearLeft, EncoderFault::reversed);
+  drive(whole, {200, 200, 200, 200}, 1000);
+  drive(faulty, {200, 200, 200, 200}, 1000);
+  EXPECT_GT(whole.state().counts[kRearLeft], 1000);
+  EXPECT_EQ(faulty.state().counts[kFrontRight], 0);
+  EXPECT_EQ(faulty.state().counts[kRearLeft], -whole.state().counts[kRearLeft]);
+  EXPECT_EQ(faulty.state().counts[kFrontLeft], whole.state().counts[kFrontLeft]);
+  EXPECT_EQ(faulty.state().pose.x, whole.state().pose.x);
+}
+
 TEST(PlantParametersCheck, NamesWhatIsOutOfRange) {
   PlantParameters p;
   p.body.mass = -1;
