@@ -1,5 +1,5 @@
-// What the mobile robot's physics cost a millisecond: driving, starting, stopping and pushed, with the floor under it, and
-// its odometry beside.
+// What the mobile robot's physics cost a millisecond: driving, starting, stopping and pushed, with the floor under it,
+// and its odometry beside.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -35,8 +35,7 @@ void BM_Plant(benchmark::State& state) {
     }
     least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     const ElectricalBook& e = plant.electrical_book();
-    const double given =
-        e.battery + e.bridges + e.windings + plant.mechanics().book().motors + plant.coil_energy();
+    const double given = e.battery + e.bridges + e.windings + plant.mechanics().book().motors + plant.coil_energy();
     if (!(std::abs(e.source - given) < 1e-6 * e.source)) return bench::wrong(state, "the books do not close");
     if (edges < 50000 || plant.unsettled() > 0) return bench::wrong(state, "it did not drive as it should");
     state.counters["edges"] = static_cast<double>(edges);

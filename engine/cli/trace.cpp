@@ -146,8 +146,7 @@ Trace encoder_trace(const std::string& path, const std::map<std::string, double>
   for (const auto& [t, counts, command, pose] : drive.samples) {
     trace.values.push_back(t);
     for (const std::int64_t count : counts) trace.values.push_back(static_cast<double>(count));
-    trace.values.insert(trace.values.end(),
-                        {command.vx, command.vy, command.omega, pose.x, pose.y, pose.theta});
+    trace.values.insert(trace.values.end(), {command.vx, command.vy, command.omega, pose.x, pose.y, pose.theta});
   }
   return trace;
 }
@@ -162,9 +161,10 @@ void add_synth(CLI::App& trace, int& exit_code) {
   };
   auto* command = trace.add_subcommand("synth", "Makes a trace from a formula");
   auto o = std::make_shared<Options>();
-  command->add_option("KIND", o->kind, "What to make: " + synthesizer_help() +
-                                          "\nencoder, of a mecanum base that drives along --path without slip:" +
-                                          robot::drive_help())
+  command
+      ->add_option("KIND", o->kind,
+                   "What to make: " + synthesizer_help() +
+                       "\nencoder, of a mecanum base that drives along --path without slip:" + robot::drive_help())
       ->required();
   add_out_options(*command, o->out, "Trace to write, .csv or .h5; only a trace is replaced")->required();
   command->add_option("--set", o->sets, "KEY=NUMBER: a parameter of the kind")->take_all();
@@ -172,8 +172,9 @@ void add_synth(CLI::App& trace, int& exit_code) {
                       fmt::format("Of encoder: {} (default: straight)", fmt::join(robot::drive_paths(), ", ")));
   add_seed_option(
       *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of its random streams (0 to 2^64 - 1)");
-  command->footer("Examples: verisim trace synth insertion -o insert.csv --set depth=0.3\n"
-                  "          verisim trace synth encoder --path square -o square.csv --set length=2");
+  command->footer(
+      "Examples: verisim trace synth insertion -o insert.csv --set depth=0.3\n"
+      "          verisim trace synth encoder --path square -o square.csv --set length=2");
   command->callback([=, &exit_code] {
     std::map<std::string, double> parameters;
     for (const auto& [key, value] : split_pairs("--set", o->sets)) {
@@ -181,6 +182,13 @@ void add_synth(CLI::App& trace, int& exit_code) {
       parameters[key] = std::strtod(value.c_str(), &end);
       if (end == value.c_str() || *end != '\0')
         fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
+    }
+    std::vector<std::string> kinds = synthesizers();
+    kinds.emplace_back("encoder");
+    if (std::find(kinds.begin(), kinds.end(), o->kind) == kinds.end()) {
+      const std::string near = nearest_name(o->kind, kinds);
+      fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o->kind,
+           near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
     }
     const bool is_drive = o->kind == "encoder";
     if (!is_drive && !o->path.empty())

@@ -1,6 +1,7 @@
-// Synthesized drives of the base: a path of straight lines, turns and arcs, each from rest to rest, as its wheels' encoders
-// would count it if nothing slipped, with the commands and the true pose. For `verisim trace synth encoder` and for tests
-// that need a known answer. Closed forms of time: pose and wheel angles of a leg are those of its twist times its progress.
+// Synthesized drives of the base: a path of straight lines, turns and arcs, each from rest to rest, as its wheels'
+// encoders would count it if nothing slipped, with the commands and the true pose. For `verisim trace synth encoder`
+// and for tests that need a known answer. Closed forms of time: pose and wheel angles of a leg are those of its twist
+// times its progress.
 #pragma once
 
 #include <map>
@@ -19,8 +20,8 @@ struct DriveSample {
   PlanarPose pose;      ///< F
 };
 
-/// "straight", "strafe", "turn" (on the spot), "square" (four sides forward, a quarter turn after each), "circle" (forward,
-/// around to the left).
+/// "straight", "strafe", "turn" (on the spot), "square" (four sides forward, a quarter turn after each), "circle"
+/// (forward, around to the left).
 [[nodiscard]] std::vector<std::string> drive_paths();
 
 /// Names, defaults, units and meanings of the parameters, one line each. For --help.

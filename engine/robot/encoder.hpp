@@ -1,5 +1,5 @@
-// Quadrature encoders at the motors: 12 lines, 48 counts a turn (dissertation section 5.3.1; ORACLES sections 2 and 3.4).
-// Times in cycles of the robot's 16 MHz clock, within the millisecond.
+// Quadrature encoders at the motors: 12 lines, 48 counts a turn (dissertation section 5.3.1; ORACLES sections 2
+// and 3.4). Times in cycles of the robot's 16 MHz clock, within the millisecond.
 //
 //   count mod 4:    0  1  2  3  0        A leads B when the motor drives the robot forward.
 //   A (bit 0):     _|~~~~~~|_____|
@@ -15,7 +15,7 @@
 
 namespace verisim::robot {
 
-inline constexpr double kCountsPerTurn = 48;                 ///< of the motor
+inline constexpr double kCountsPerTurn = 48;  ///< of the motor
 using Edge = firmware::EncoderEdge;
 
 enum class EncoderFault : std::uint8_t {

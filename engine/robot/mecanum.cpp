@@ -14,8 +14,8 @@ PerWheel wheel_speeds(const MecanumGeometry& geometry, const PlanarTwist& twist)
   VERISIM_ASSERT(is_positive(geometry.wheel_radius));
   const double r = geometry.wheel_radius;
   const double turning = (geometry.half_base + geometry.half_track) * twist.omega;
-  return {(twist.vx - twist.vy - turning) / r, (twist.vx + twist.vy + turning) / r,
-          (twist.vx + twist.vy - turning) / r, (twist.vx - twist.vy + turning) / r};
+  return {(twist.vx - twist.vy - turning) / r, (twist.vx + twist.vy + turning) / r, (twist.vx + twist.vy - turning) / r,
+          (twist.vx - twist.vy + turning) / r};
 }
 
 PlanarTwist twist_of(const MecanumGeometry& geometry, const PerWheel& speeds) {

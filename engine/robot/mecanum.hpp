@@ -1,8 +1,10 @@
-// Kinematics of a base on four mecanum wheels whose rollers stand at 45 degrees to the axles (dissertation section 5.3.1;
-// ORACLES section 2, "Mecanum" and "Mecanum without slip"). Pure functions: no state, no allocation, tens of flops.
+// Kinematics of a base on four mecanum wheels whose rollers stand at 45 degrees to the axles (dissertation
+// section 5.3.1; ORACLES section 2, "Mecanum" and "Mecanum without slip"). Pure functions: no state, no allocation,
+// tens of flops.
 //
-// Robot coordinates R: x forward, y left, origin in the middle of the wheels. Floor coordinates F: x and y on the floor,
-// theta counter-clockwise seen from above. SI units. A wheel's speed is positive when it rolls the robot forward.
+// Robot coordinates R: x forward, y left, origin in the middle of the wheels. Floor coordinates F: x and y on the
+// floor, theta counter-clockwise seen from above. SI units. A wheel's speed is positive when it rolls the robot
+// forward.
 //
 // Seen from above. The rollers that are seen, on top, form an X; those that stand on the floor, below, are their mirror
 // images and form a diamond: their axles are the lines drawn here, and a wheel pushes the base along its line alone,

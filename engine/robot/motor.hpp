@@ -1,11 +1,12 @@
-// A motor of the robot, the bridge that feeds it and the gear behind it: their figures, and how the current of the winding
-// moves in a step. SI units; motor side unless said. Positive voltage, current, torque and speed drive the robot forward.
+// A motor of the robot, the bridge that feeds it and the gear behind it: their figures, and how the current of the
+// winding moves in a step. SI units; motor side unless said. Positive voltage, current, torque and speed drive the
+// robot forward.
 //
-// Bridge: 8 bit of signed duty, as an average: the winding sees d V_s - sign(i) (V_0 + R_0 |i|), d = duty / 255. While the
-// pulse is off the current runs on through a transistor and a diode, with about the drop of two transistors. The period
-// of the pulses is not resolved; the average holds where it is far shorter than the motor's 6 ms, and counts a little too
-// little torque where the current dies within a pulse. Below V_0 at the winding no current flows: duties of 29 and less
-// do nothing at 12 V.
+// Bridge: 8 bit of signed duty, as an average: the winding sees d V_s - sign(i) (V_0 + R_0 |i|), d = duty / 255. While
+// the pulse is off the current runs on through a transistor and a diode, with about the drop of two transistors. The
+// period of the pulses is not resolved; the average holds where it is far shorter than the motor's 6 ms, and counts a
+// little too little torque where the current dies within a pulse. Below V_0 at the winding no current flows: duties of
+// 29 and less do nothing at 12 V.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +15,11 @@ namespace verisim::robot {
 
 /// Faulhaber 2342 012CR (ORACLES section 2).
 struct MotorParameters {
-  double torque_constant = 13.4e-3;  ///< k_M [N m/A], and back-EMF [V s/rad]
-  double resistance = 1.9;           ///< R [ohm]
-  double inductance = 65e-6;         ///< L [H]
-  double inertia = 5.7e-7;           ///< of the rotor [kg m^2]
-  double nominal_voltage = 12;       ///< at which the next is stated [V]
+  double torque_constant = 13.4e-3;                        ///< k_M [N m/A], and back-EMF [V s/rad]
+  double resistance = 1.9;                                 ///< R [ohm]
+  double inductance = 65e-6;                               ///< L [H]
+  double inertia = 5.7e-7;                                 ///< of the rotor [kg m^2]
+  double nominal_voltage = 12;                             ///< at which the next is stated [V]
   double no_load_speed = 8100.0 / 60 * 6.283185307179586;  ///< [rad/s]
 };
 

@@ -38,7 +38,8 @@ class WheelMap {
 class Odometry {
  public:
   /// begins at `pose`, where the counts are `counts`
-  Odometry(const WheelMap& map, const PlanarPose& pose, const Counts& counts) : map_(map), pose_(pose), counts_(counts) {}
+  Odometry(const WheelMap& map, const PlanarPose& pose, const Counts& counts)
+      : map_(map), pose_(pose), counts_(counts) {}
   const PlanarPose& advance(const Counts& counts);
   [[nodiscard]] const PlanarPose& pose() const { return pose_; }
 
@@ -70,8 +71,8 @@ struct SlipLimits {
 };
 
 /// Says that wheels slip when the four speeds fit no motion: |w_FL + w_FR - w_RL - w_RR| above the bound for as long as
-/// `hold`. A residual that jumps to R > bound is told after window * bound / R + hold, 0.15 s at most. It cannot see what
-/// the wheels do not: a base that a push turns or shifts while all four stand.
+/// `hold`. A residual that jumps to R > bound is told after window * bound / R + hold, 0.15 s at most. It cannot see
+/// what the wheels do not: a base that a push turns or shifts while all four stand.
 class SlipDetector {
  public:
   /// @pre period > 0 [s], limits positive

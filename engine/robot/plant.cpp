@@ -84,8 +84,10 @@ PerWheel Plant::loads(const Reaction& reaction) {
 void Plant::substep(const PerWheel& duty, const Reaction& reaction, std::uint32_t cycle) {
   const double voltage = parameters_.supply.voltage - parameters_.supply.resistance * supply_current_;
   std::array<MotorDrive, kWheels> drive;
-  for (std::size_t i = 0; i < kWheels; ++i)
-    drive[i] = {winding_[i].begin(duty[i] * voltage, base_.wheels()[i].motor_speed), blocked_[i]};
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    drive[i].torque = winding_[i].begin(duty[i] * voltage, base_.wheels()[i].motor_speed);
+    drive[i].blocked = blocked_[i];
+  }
   state_.load = loads(reaction);
   const auto [cx, cy] = parameters_.body.centre_of_mass;
   const Vector3d& f = reaction.force;

@@ -6,11 +6,11 @@
 //
 // Loads: the base is stiff and stands on four equal springs, so the vertical force and the moments about x and y are
 // shared as N_i = W/4 + x_i S_x / (4 l^2) + y_i S_y / (4 w^2). The moments are those of the reaction and of the floor's
-// forces below the centre of mass, a substep late. A wheel that would be pulled at is lifted: it carries nothing and the
-// others carry its part in proportion. That the base then tips is not simulated; it is counted.
+// forces below the centre of mass, a substep late. A wheel that would be pulled at is lifted: it carries nothing and
+// the others carry its part in proportion. That the base then tips is not simulated; it is counted.
 //
 // First order in the substep: halving it moves a start, a stop or a curve by less than an encoder count (0.1 mm).
-// About 2.5 us a millisecond; no allocation; the same bits for the same calls.
+// About 2 us a millisecond; no allocation; the same bits for the same calls.
 #pragma once
 
 #include <array>
@@ -33,14 +33,14 @@ struct Reaction {
 
 /// What can be seen of the robot at the end of a millisecond. Wheels in the order FL, FR, RL, RR.
 struct PlantState {
-  PlanarPose pose;               ///< of the middle of the wheels, F
-  PlanarTwist twist;             ///< of the middle of the wheels, R
-  PerWheel wheel_speed{};        ///< [rad/s]
-  PerWheel motor_speed{};        ///< [rad/s]
-  PerWheel current{};            ///< [A]
-  PerWheel slip{};               ///< of the floor's roller along its axle [m/s]
-  PerWheel load{};               ///< normal force [N]
-  double supply_voltage = 0;     ///< at the bridges [V]
+  PlanarPose pose;                             ///< of the middle of the wheels, F
+  PlanarTwist twist;                           ///< of the middle of the wheels, R
+  PerWheel wheel_speed{};                      ///< [rad/s]
+  PerWheel motor_speed{};                      ///< [rad/s]
+  PerWheel current{};                          ///< [A]
+  PerWheel slip{};                             ///< of the floor's roller along its axle [m/s]
+  PerWheel load{};                             ///< normal force [N]
+  double supply_voltage = 0;                   ///< at the bridges [V]
   std::array<std::int64_t, kWheels> counts{};  ///< of the encoders, as a decoder that misses nothing has them
 };
 
@@ -67,8 +67,8 @@ class Plant {
   /// Sets the base down elsewhere, as it is otherwise.
   void place(const PlanarPose& pose);
 
-  /// Faults, from the next millisecond on. Without supply the duties count as 0: nothing drives, and a motor that is turned
-  /// fast enough is braked through its bridge.
+  /// Faults, from the next millisecond on. Without supply the duties count as 0: nothing drives, and a motor that is
+  /// turned fast enough is braked through its bridge.
   void set_supplied(bool on) { is_supplied_ = on; }
   /// @pre voltage >= 0 [V]
   void set_supply_voltage(double voltage);
@@ -98,7 +98,7 @@ class Plant {
   std::array<Encoder, kWheels> encoder_;
   std::array<bool, kWheels> blocked_{};
   bool is_supplied_ = true;
-  double supply_current_ = 0;  ///< of the last substep [A]
+  double supply_current_ = 0;         ///< of the last substep [A]
   double x_ = 0, y_ = 0, theta_ = 0;  ///< of the centre of mass, F
   Edges edges_;
   PlantState state_;

@@ -18,7 +18,8 @@ void not_negative(const char* name, double value) {
 }
 
 void efficiency(const char* name, double value) {
-  if (!(value > 0) || value > 1) fail(ErrorKind::usage, "robot: {} is {} but must be above 0 and at most 1", name, value);
+  if (!(value > 0) || value > 1)
+    fail(ErrorKind::usage, "robot: {} is {} but must be above 0 and at most 1", name, value);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ constexpr int kTrialsMax = 12;
 constexpr double kGapRounding = 1e-13;    // rad
 constexpr double kTorqueRounding = 1e-9;  // N m
 
-std::int8_t sign_of(double x) {
-  return x < 0 ? std::int8_t{-1} : std::int8_t{1};
+int sign_of(double x) {
+  return x < 0 ? -1 : 1;
 }
 
 /// Of the stretches.
@@ -34,7 +34,15 @@ RollingBase::RollingBase(const PlantParameters& parameters, double step)
       motor_dry_friction_(dry_friction(parameters.motor)),
       wheel_radius_(parameters.geometry.wheel_radius),
       h_(step),
-      mass_(parameters.body.mass, parameters.body.mass, parameters.body.inertia) {
+      per_h_(1 / step),
+      motor_inertia_per_h_(motor_inertia_ / step),
+      wheel_inertia_per_h_(parameters.wheel.inertia / step),
+      per_ratio_(1 / parameters.gear.ratio),
+      half_backlash_(parameters.gear.backlash / 2),
+      hold_(parameters.wheel.stiffness * step + parameters.wheel.damping),
+      per_stiffness_(1 / parameters.wheel.stiffness),
+      mass_(parameters.body.mass, parameters.body.mass, parameters.body.inertia),
+      mass_per_h_(mass_ / step) {
   VERISIM_ASSERT(is_positive(step));
   const auto [cx, cy] = parameters.body.centre_of_mass;
   for (std::size_t i = 0; i < kWheels; ++i) {
@@ -54,15 +62,16 @@ void RollingBase::eliminate(std::size_t i, const MotorDrive& drive) {
   const Guess& guess = guess_[i];
   const Place& place = place_[i];
   Elimination& e = eliminated_[i];
-  const double hold = parameters_.stiffness * h_ + parameters_.damping;
-  e.holds_along = guess.along == 0 ? hold : 0;
-  e.holds_across = guess.across == 0 ? hold : 0;
-  e.holds_rolling = guess.rolling == 0 ? hold : 0;
-  e.motor_term = motor_inertia_ / h_ + drive.torque.per_speed / 2;
+  e.holds_along = guess.along == 0 ? hold_ : 0;
+  e.holds_across = guess.across == 0 ? hold_ : 0;
+  e.holds_rolling = guess.rolling == 0 ? hold_ : 0;
+  e.motor_term = motor_inertia_per_h_ + drive.torque.per_speed / 2;
   e.motor_weight = guess.flank == 0 ? 0 : gear_.ratio * efficiency_factor(guess);
+  e.per_motor_term = 1 / e.motor_term;
+  e.per_motor_weight = guess.flank == 0 ? 0 : 1 / e.motor_weight;
   e.q = place.lever_along * e.holds_along * place.along + place.lever_across * e.holds_across * place.across;
   const bool is_held = guess.flank != 0 && guess.motor == 0;
-  const double P = parameters_.inertia / h_ + e.motor_weight * gear_.ratio * e.motor_term +
+  const double P = wheel_inertia_per_h_ + e.motor_weight * gear_.ratio * e.motor_term +
                    place.lever_along * place.lever_along * e.holds_along +
                    place.lever_across * place.lever_across * e.holds_across +
                    wheel_radius_ * wheel_radius_ * e.holds_rolling;
@@ -70,7 +79,7 @@ void RollingBase::eliminate(std::size_t i, const MotorDrive& drive) {
 }
 
 void RollingBase::factorize(const std::array<MotorDrive, kWheels>& drive) {
-  Matrix3d A = (mass_ / h_).asDiagonal();
+  Matrix3d A = mass_per_h_.asDiagonal();
   for (std::size_t i = 0; i < kWheels; ++i) {
     eliminate(i, drive[i]);
     const Elimination& e = eliminated_[i];
@@ -83,21 +92,21 @@ void RollingBase::factorize(const std::array<MotorDrive, kWheels>& drive) {
 }
 
 void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerWheel& load, const Vector3d& wrench) {
-  Vector3d b = mass_.cwiseProduct(u_) / h_ + wrench;
+  Vector3d b = mass_per_h_.cwiseProduct(u_) + wrench;
   for (std::size_t i = 0; i < kWheels; ++i) {
     const Guess& guess = guess_[i];
     const Elimination& e = eliminated_[i];
     const WheelState& old = before_[i];
-    const double along = guess.along == 0 ? parameters_.stiffness * old.stretch_along
-                                          : -guess.along * parameters_.friction * load[i];
+    const double along =
+        guess.along == 0 ? parameters_.stiffness * old.stretch_along : -guess.along * parameters_.friction * load[i];
     const double across = guess.across == 0 ? parameters_.stiffness * old.stretch_across
                                             : -guess.across * parameters_.roller_resistance * load[i];
     const double rolling = guess.rolling == 0 ? parameters_.stiffness * old.stretch_rolling
                                               : -guess.rolling * parameters_.rolling_resistance * load[i];
-    const double catch_up = guess.flank == 0 ? 0 : (old.gap - guess.flank * gear_.backlash / 2) / h_;
-    const double motor = (motor_inertia_ / h_ - drive[i].torque.per_speed / 2) * old.motor_speed +
+    const double catch_up = guess.flank == 0 ? 0 : (old.gap - guess.flank * half_backlash_) * per_h_;
+    const double motor = (motor_inertia_per_h_ - drive[i].torque.per_speed / 2) * old.motor_speed +
                          drive[i].torque.at_rest - guess.motor * motor_dry_friction_;
-    double Q = parameters_.inertia / h_ * old.wheel_speed + place_[i].lever_along * along +
+    double Q = wheel_inertia_per_h_ * old.wheel_speed + place_[i].lever_along * along +
                place_[i].lever_across * across - wheel_radius_ * rolling +
                e.motor_weight * (motor + e.motor_term * gear_.ratio * catch_up);
     Q *= e.inverse;
@@ -108,7 +117,7 @@ void RollingBase::solve(const std::array<MotorDrive, kWheels>& drive, const PerW
     forces.across = -across;
     forces.rolling = -rolling;
     now.wheel_speed = Q;
-    now.motor_speed = guess.flank == 0 ? (guess.motor == 0 ? 0 : motor / e.motor_term) : catch_up;
+    now.motor_speed = guess.flank == 0 ? (guess.motor == 0 ? 0 : motor * e.per_motor_term) : catch_up;
     b += e.q * Q - place_[i].along * along - place_[i].across * across;
   }
   u_new_ = inverse_.col(0) * b.x() + inverse_.col(1) * b.y() + inverse_.col(2) * b.z();
@@ -131,72 +140,78 @@ void RollingBase::follow(std::size_t i, const MotorDrive& drive) {
   forces.across -= e.holds_across * forces.roll;
   forces.rolling -= e.holds_rolling * wheel_radius_ * now.wheel_speed;
   forces.gear_torque = guess.flank == 0 ? 0
-                                     : parameters_.inertia / h_ * (now.wheel_speed - old.wheel_speed) +
-                                           place.lever_along * forces.along + place.lever_across * forces.across -
-                                           wheel_radius_ * forces.rolling;
+                                        : wheel_inertia_per_h_ * (now.wheel_speed - old.wheel_speed) +
+                                              place.lever_along * forces.along + place.lever_across * forces.across -
+                                              wheel_radius_ * forces.rolling;
   if (guess.motor == 0) {
-    forces.gear_load = forces.gear_torque / gear_.ratio;
-    forces.motor_friction = forces.gear_load - drive.torque.at_rest -
-                         (motor_inertia_ / h_ - drive.torque.per_speed / 2) * old.motor_speed;
+    forces.gear_load = forces.gear_torque * per_ratio_;
+    forces.motor_friction =
+        forces.gear_load - drive.torque.at_rest - (motor_inertia_per_h_ - drive.torque.per_speed / 2) * old.motor_speed;
   } else {
-    forces.gear_load = guess.flank == 0 ? 0 : forces.gear_torque / e.motor_weight;
+    forces.gear_load = forces.gear_torque * e.per_motor_weight;
     forces.motor_friction = -guess.motor * motor_dry_friction_;
   }
 }
 
-std::int8_t RollingBase::corrected_flank(std::size_t i) const {
+int RollingBase::corrected_flank(std::size_t i) const {
   const Guess& guess = guess_[i];
   const WheelState& now = wheel_[i];
   const WheelForces& forces = forces_[i];
-  if (guess.flank != 0) return guess.flank * forces.gear_torque < -kTorqueRounding ? std::int8_t{0} : guess.flank;
-  const double gap = before_[i].gap + h_ * (now.motor_speed / gear_.ratio - now.wheel_speed);
-  return std::abs(gap) > gear_.backlash / 2 + kGapRounding ? sign_of(gap) : std::int8_t{0};
+  if (guess.flank != 0) return guess.flank * forces.gear_torque < -kTorqueRounding ? 0 : guess.flank;
+  const double gap = before_[i].gap + h_ * (now.motor_speed * per_ratio_ - now.wheel_speed);
+  return std::abs(gap) > half_backlash_ + kGapRounding ? sign_of(gap) : 0;
 }
 
-std::int8_t RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive) const {
+int RollingBase::corrected_motor(std::size_t i, const MotorDrive& drive) const {
   const Guess& guess = guess_[i];
   const WheelState& now = wheel_[i];
   const WheelForces& forces = forces_[i];
   if (drive.blocked) return 0;
-  if (guess.motor != 0) return guess.motor * now.motor_speed < 0 ? std::int8_t{0} : guess.motor;
+  if (guess.motor != 0) return guess.motor * now.motor_speed < 0 ? 0 : guess.motor;
   // Friction must hold what drives the motor, against the gear's torque as driving or being driven would feel it.
   const double driving = forces.gear_load - forces.motor_friction;
-  const double driven_load = forces.gear_load * gear_.efficiency_driven, driving_load = forces.gear_load / gear_.efficiency;
+  const double driven_load = forces.gear_load * gear_.efficiency_driven,
+               driving_load = forces.gear_load / gear_.efficiency;
   if (driving > std::max(driven_load, driving_load) + motor_dry_friction_) return 1;
   if (driving < std::min(driven_load, driving_load) - motor_dry_friction_) return -1;
   return 0;
 }
 
-RollingBase::Guess RollingBase::corrected(std::size_t i, const MotorDrive& drive, double load) const {
+/// Corrects the guess by what came of it. Whether it was right.
+bool RollingBase::correct(std::size_t i, const MotorDrive& drive, double load) {
   const WheelState& old = before_[i];
   const WheelState& now = wheel_[i];
   const WheelForces& forces = forces_[i];
-  const double hold = parameters_.stiffness * h_ + parameters_.damping;
-  const auto slides = [&](double stretch, double slip, double bound) {
-    const double force = -(parameters_.stiffness * stretch + hold * slip);
-    return std::abs(force) < bound ? std::int8_t{0} : sign_of(force);
+  const auto slides = [this](double stretch, double slip, double bound) {
+    const double force = -(parameters_.stiffness * stretch + hold_ * slip);
+    return std::abs(force) < bound ? 0 : sign_of(force);
   };
-  Guess guess = guess_[i];
-  guess.motor = corrected_motor(i, drive);
-  guess.flank = corrected_flank(i);
-  guess.along = slides(old.stretch_along, forces.slip, parameters_.friction * load);
-  guess.across = slides(old.stretch_across, forces.roll, parameters_.roller_resistance * load);
-  guess.rolling =
+  const int motor = corrected_motor(i, drive), flank = corrected_flank(i);
+  const int along = slides(old.stretch_along, forces.slip, parameters_.friction * load);
+  const int across = slides(old.stretch_across, forces.roll, parameters_.roller_resistance * load);
+  const int rolling =
       slides(old.stretch_rolling, wheel_radius_ * now.wheel_speed, parameters_.rolling_resistance * load);
-  return guess;
+  Guess& guess = guess_[i];
+  const bool right = motor == guess.motor && flank == guess.flank && along == guess.along && across == guess.across &&
+                     rolling == guess.rolling;
+  guess.motor = motor;
+  guess.flank = flank;
+  guess.along = along;
+  guess.across = across;
+  guess.rolling = rolling;
+  return right;
 }
 
 void RollingBase::finish(std::size_t i) {
   WheelState& now = wheel_[i];
   const WheelForces& forces = forces_[i];
-  const Guess& guess = guess_[i];
-  const double k = parameters_.stiffness;
-  now.stretch_along = guess.along == 0 ? now.stretch_along + h_ * forces.slip : -forces.along / k;
-  now.stretch_across = guess.across == 0 ? now.stretch_across + h_ * forces.roll : -forces.across / k;
-  now.stretch_rolling =
-      guess.rolling == 0 ? now.stretch_rolling + h_ * wheel_radius_ * now.wheel_speed : -forces.rolling / k;
-  now.gap = guess.flank == 0 ? now.gap + h_ * (now.motor_speed / gear_.ratio - now.wheel_speed)
-                             : guess.flank * gear_.backlash / 2;
+  const Guess& guess = factorized_[i];  // that of which the forces came, also where nothing settled
+  now.stretch_along = guess.along == 0 ? now.stretch_along + h_ * forces.slip : -forces.along * per_stiffness_;
+  now.stretch_across = guess.across == 0 ? now.stretch_across + h_ * forces.roll : -forces.across * per_stiffness_;
+  now.stretch_rolling = guess.rolling == 0 ? now.stretch_rolling + h_ * wheel_radius_ * now.wheel_speed
+                                           : -forces.rolling * per_stiffness_;
+  now.gap =
+      guess.flank == 0 ? now.gap + h_ * (now.motor_speed * per_ratio_ - now.wheel_speed) : guess.flank * half_backlash_;
 }
 
 /// Every force times the mean of the velocities before and after: that much the kinetic energies change, exactly.
@@ -232,20 +247,18 @@ void RollingBase::step(const std::array<MotorDrive, kWheels>& drive, const PerWh
   before_ = wheel_;
   for (std::size_t i = 0; i < kWheels; ++i) {
     VERISIM_ASSERT(load[i] >= 0);
-    guess_[i].conducts = drive[i].torque.per_speed > 0;
+    guess_[i].conducts = drive[i].torque.per_speed > 0 ? 1 : 0;
     if (drive[i].blocked) guess_[i].motor = 0;
   }
   bool settled = false;
   for (int trial = 0; trial < kTrialsMax && !settled; ++trial) {
     if (!is_factorized_ || guess_ != factorized_) factorize(drive);
     solve(drive, load, wrench);
-    std::array<Guess, kWheels> corrected_guess;
+    settled = true;
     for (std::size_t i = 0; i < kWheels; ++i) {
       follow(i, drive[i]);
-      corrected_guess[i] = corrected(i, drive[i], load[i]);
+      settled = correct(i, drive[i], load[i]) && settled;
     }
-    settled = corrected_guess == guess_;
-    if (!settled && trial + 1 < kTrialsMax) guess_ = corrected_guess;
   }
   unsettled_ += settled ? 0 : 1;
   floor_force_ = Vector3d::Zero();

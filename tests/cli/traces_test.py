@@ -65,10 +65,8 @@ grasp(omni, box)""")
             self.assertEqual(rows[4], "t,e0,e1,e2,e3,vx,vy,omega,x,y,theta")
             for value, expected in zip(rows[-1].split(",")[-3:], end):
                 self.assertAlmostEqual(float(value), expected, places=7)
-        self.assertIn("did you mean 'square'", self.fail(2, "trace", "synth", "encoder", "--path", "sqare", "-o",
-                                                         self.path("no.csv")).stderr)
-        self.assertIn("only encoder has", self.fail(2, "trace", "synth", "sine", "--path", "square", "-o",
-                                                    self.path("no.csv")).stderr)
+        self.refuse(2, "did you mean 'square'", "trace", "synth", "encoder", "--path", "sqare", "-o", self.path("no.csv"))
+        self.refuse(2, "only encoder has", "trace", "synth", "sine", "--path", "square", "-o", self.path("no.csv"))
 
     def test_a_device_that_nothing_drives_stays_and_says_so(self):
         self.write("s.lua", 'defineSimulationParameters{duration = 0.1}\n'

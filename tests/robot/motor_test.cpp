@@ -30,7 +30,7 @@ TEST(Motor, StallsAt84Point6MillinewtonMetres) {
 
 TEST(Motor, FrictionIsWhatTheNoLoadSpeedLeaves) {
   EXPECT_NEAR(dry_friction(kMotor), 13.4e-3 * (12 - 13.4e-3 * 848.23) / 1.9, tolerance(1e-7));  // 848.23 rad/s
-  EXPECT_NEAR(dry_friction(kMotor) / kMotor.torque_constant, 0.334, tolerance(0.5e-3));  // A
+  EXPECT_NEAR(dry_friction(kMotor) / kMotor.torque_constant, 0.334, tolerance(0.5e-3));         // A
 }
 
 TEST(Motor, RunsAt8100TurnsAMinuteWithoutLoad) {
@@ -40,7 +40,7 @@ TEST(Motor, RunsAt8100TurnsAMinuteWithoutLoad) {
 }
 
 // 101 rpm/mN m: with k_M, R: R / k_M^2. Load: the wheel's rolling resistance, r c N / ratio at the motor.
-TEST(Motor, LosesA101TurnsAMinutePerMillinewtonMetre) {
+TEST(Motor, Loses101TurnsAMinutePerMillinewtonMetre) {
   const auto speed = [](double rolling_resistance) {
     PlantParameters p = plants::without_losses();
     p.wheel.rolling_resistance = rolling_resistance;
@@ -51,7 +51,7 @@ TEST(Motor, LosesA101TurnsAMinutePerMillinewtonMetre) {
   const PlantParameters p;
   const double load = 0.02 * p.body.mass * p.gravity / 4 * p.geometry.wheel_radius / p.gear.ratio;
   const double slope = (speed(0) - speed(0.02)) / kRpm / (load * 1e3);
-  EXPECT_NEAR(slope, 101, tolerance(0.5));                                          // as printed
+  EXPECT_NEAR(slope, 101, tolerance(0.5));                                      // as printed
   EXPECT_NEAR(slope, 1.9 / (13.4e-3 * 13.4e-3) / kRpm / 1e3, tolerance(1e-3));  // settled to exp(-3 s / 0.18 s)
 }
 

@@ -50,7 +50,8 @@ TEST(WheelMap, UndoesTheKinematics) {
   EXPECT_NEAR(back.omega, there.omega, tolerance(1e-14));
 }
 
-// Counts are whole: 0.1 mm of floor each, 0.17 mrad of a turn; in a square the turns' errors move its 1 m sides by 0.2 mm.
+// Counts are whole: 0.1 mm of floor each, 0.17 mrad of a turn; in a square the turns' errors move its 1 m sides by 0.2
+// mm.
 TEST(Odometry, FindsTheEndOfSynthesizedDrives) {
   for (const std::string& path : drive_paths()) {
     SCOPED_TRACE(path);
@@ -77,7 +78,8 @@ TEST(Drive, GoesWhereItsPathSays) {
   }
 }
 
-// The command is the derivative of the pose, in robot coordinates, in the middle of two samples, to their distance's square.
+// The command is the derivative of the pose, in robot coordinates, in the middle of two samples, to their distance's
+// square.
 TEST(Drive, CommandsWhatItDoes) {
   const DriveTrace drive = synthesize_drive("circle", {{"rate", 1000}});
   for (std::size_t i = 1000; i + 1 < 6000; ++i) {

@@ -1,4 +1,5 @@
-// The whole robot on the floor: where it drives, how fast, and that the substep, the repetition and the heap do not show.
+// The whole robot on the floor: where it drives, how fast, and that the substep, the repetition and the heap do not
+// show.
 #include "engine/robot/plant.hpp"
 
 #include <gtest/gtest.h>
@@ -30,8 +31,8 @@ double settled_speed(const PlantParameters& p, double duty, double load) {
 /// Torque at the motor against which it drives when each wheel's floor takes `torque` from it [N m].
 double load_of(const PlantParameters& p, double torque) {
   const double N = p.body.mass * p.gravity / 4;
-  return dry_friction(p.motor) + (p.wheel.rolling_resistance * N * p.geometry.wheel_radius + torque) /
-                                     (p.gear.ratio * p.gear.efficiency);
+  return dry_friction(p.motor) +
+         (p.wheel.rolling_resistance * N * p.geometry.wheel_radius + torque) / (p.gear.ratio * p.gear.efficiency);
 }
 
 struct Motion {
@@ -40,8 +41,8 @@ struct Motion {
   double lever;  ///< torque of a wheel that turns its rollers: c N times this [m]
 };
 
-// A roller's rim runs at sqrt 2 of the wheel's in a strafe, and at 1 / sqrt 2 in a turn with l = w; its resistance takes
-// that much power, and the wheel gives it.
+// A roller's rim runs at sqrt 2 of the wheel's in a strafe, and at 1 / sqrt 2 in a turn with l = w; its resistance
+// takes that much power, and the wheel gives it.
 const Motion kMotions[] = {{"straight", {200, 200, 200, 200}, 0},
                            {"strafe", {-200, 200, 200, -200}, std::sqrt(2.0) * 0.05},
                            {"turn", {-200, 200, -200, 200}, 0.05 / std::sqrt(2.0)}};
@@ -118,7 +119,7 @@ TEST(Plant, SaysWhatItReachesAt12VoltsLessTheBridgesDrop) {
 /// Starts, stops, curves and a turn on the spot, 4 s.
 Duties errand(int millisecond) {
   const int part = millisecond / 500;
-  const Duties parts[] = {{180, 180, 180, 180}, {255, 100, 200, 150}, {0, 0, 0, 0},         {-90, 90, 120, -150},
+  const Duties parts[] = {{180, 180, 180, 180}, {255, 100, 200, 150},   {0, 0, 0, 0},        {-90, 90, 120, -150},
                           {60, 60, 60, 60},     {-200, 200, -200, 200}, {-255, 255, 0, 100}, {0, 0, 0, 0}};
   return parts[part % 8];
 }

@@ -1,5 +1,7 @@
-// Recorded ticks of another mecanum robot through odometry and speed estimation, against motion capture: the recordings of
-// ../shared/data/traces/mecanum_omni4, whose README states the fitted geometry and the end errors that are expected here.
+// Recorded ticks of another mecanum robot through odometry and speed estimation, against motion capture: the recordings
+// of
+// ../shared/data/traces/mecanum_omni4, whose README states the fitted geometry and the end errors that are expected
+// here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,15 +20,13 @@ struct Recording {
   const char* file;
   double end_error;  ///< with the fitted geometry, as the README states it [m]
 };
-const Recording kRecordings[] = {{"circular_080920201015/080920201015_run-01", 0.155},
-                                 {"circular_080920201015/080920201015_run-04", 0.155},
-                                 {"circular_080920201015/080920201015_run-10", 0.214},
-                                 {"square_080920201205/080920201205_run-01", 0.012},
-                                 {"square_080920201205/080920201205_run-02", 0.003},
-                                 {"square_080920201205/080920201205_run-03", 0.038}};
+const Recording kRecordings[] = {
+    {"circular_080920201015/080920201015_run-01", 0.155}, {"circular_080920201015/080920201015_run-04", 0.155},
+    {"circular_080920201015/080920201015_run-10", 0.214}, {"square_080920201205/080920201205_run-01", 0.012},
+    {"square_080920201205/080920201205_run-02", 0.003},   {"square_080920201205/080920201205_run-03", 0.038}};
 
-/// Wheel turns per dx, dy [m], dtheta [rad], as fitted by the README. Its wheels 1 to 4 are FL, FR, RL, RR, the right ones
-/// mounted the other way around.
+/// Wheel turns per dx, dy [m], dtheta [rad], as fitted by the README. Its wheels 1 to 4 are FL, FR, RL, RR, the right
+/// ones mounted the other way around.
 CountsPerDisplacement fitted() {
   CountsPerDisplacement turns;
   turns << 4.806, -4.986, -0.994, -4.751, -5.021, -0.993, 4.783, 5.002, -1.001, -4.772, 4.963, -1.001;
@@ -103,7 +103,8 @@ TEST(RecordedDrive, HasTheSpeedsOfMotionCapture) {
     }
     const auto windows = static_cast<double>(trace.rows() - kWindow);
     std::printf("%s: %.2f mm/s rms, %.2f mrad/s rms, up to %.0f mm/s, %.0f mrad/s\n", recording.file,
-                std::sqrt(squares / windows) * 1e3, std::sqrt(turn_squares / windows) * 1e3, fastest * 1e3, fastest_turn * 1e3);
+                std::sqrt(squares / windows) * 1e3, std::sqrt(turn_squares / windows) * 1e3, fastest * 1e3,
+                fastest_turn * 1e3);
     EXPECT_GT(fastest, 0.04);
     // Motion capture's noise (0.4 mm, 3 mrad; README) over 0.5 s, and some 5 % of the drive's fastest: the geometry is
     // one fit to all drives, and in corners wheels slip.
@@ -112,7 +113,8 @@ TEST(RecordedDrive, HasTheSpeedsOfMotionCapture) {
   }
 }
 
-// In the recorder's order the right wheels count backwards; as FL, FR, RL, RR their residual tells whether they slipped.
+// In the recorder's order the right wheels count backwards; as FL, FR, RL, RR their residual tells whether they
+// slipped.
 TEST(RecordedDrive, DidNotSlip) {
   for (const auto& recording : kRecordings) {
     SCOPED_TRACE(recording.file);
