@@ -133,6 +133,7 @@ void drive(const int16_t (&duty)[fw::kWheels]) {
 int main() {
   start();
   set_sleep_mode(SLEEP_MODE_IDLE);
+  bool has_sampled = false;
   for (uint8_t done = 0;; ++done) {
     cli();
     while (done == begun) {
@@ -143,7 +144,8 @@ int main() {
       cli();
     }
     sei();
-    if (firmware.work()) drive(firmware.duty());
+    if (has_sampled) drive(firmware.duty());  // with the timer, however long the sample took: no jitter
+    has_sampled = firmware.work();
     firmware.report();
   }
 }
