@@ -116,6 +116,11 @@ Chip::Chip(const std::string& elf) {
   for (avr_io_t* io = avr_->io_port; io != nullptr; io = io->next)
     if (std::strcmp(io->kind, "uart") == 0) uart_ = reinterpret_cast<avr_uart_t*>(io);
   if (uart_ == nullptr) throw std::runtime_error("this simavr's ATmega328P has no serial line");
+  for (std::size_t wheel = 0; wheel < 4; ++wheel)
+    for (std::size_t bit = 0; bit < 2; ++bit) {
+      const Pin pin = kEncoderPins[wheel][bit];
+      pins_[wheel][bit] = avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(pin.port), pin.bit);
+    }
   boot();
 }
 
@@ -160,8 +165,7 @@ void Chip::apply(const EncoderEdge& edge, bool anew) {
   const unsigned changed = anew ? 3U : static_cast<unsigned>(levels_[edge.wheel] ^ edge.levels);
   for (int bit = 0; bit < 2; ++bit) {
     if ((changed >> bit & 1U) == 0) continue;
-    const Pin pin = kEncoderPins[edge.wheel][static_cast<std::size_t>(bit)];
-    avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(pin.port), pin.bit), edge.levels >> bit & 1U);
+    avr_raise_irq(pins_[edge.wheel][static_cast<std::size_t>(bit)], edge.levels >> bit & 1U);
   }
   Encoder counter;
   counter.levels = levels_[edge.wheel];

@@ -54,9 +54,10 @@ class Chip {
 
   avr_t* avr_ = nullptr;
   avr_uart_t* uart_ = nullptr;
-  std::uint32_t encoders_ = 0, bytes_lost_ = 0;  ///< addresses of the firmware's variables
-  std::uint64_t begin_ = 0;                      ///< cycle at which this millisecond begins
-  std::uint64_t clock_began_ = 0;                ///< cycle at which the firmware started its clock
+  std::array<std::array<avr_irq_t*, 2>, 4> pins_{};  ///< A and B of each encoder
+  std::uint32_t encoders_ = 0, bytes_lost_ = 0;      ///< addresses of the firmware's variables
+  std::uint64_t begin_ = 0;                          ///< cycle at which this millisecond begins
+  std::uint64_t clock_began_ = 0;                    ///< cycle at which the firmware started its clock
   bool is_powered_ = true;
 
   std::span<const EncoderEdge> edges_;

@@ -81,7 +81,7 @@ TEST_F(Avr, At22400EdgesPerSecondLosesNoneAndHasTimeLeft) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   const BoardLoad& load = board->load();
   const double busy = static_cast<double>(load.busy_cycles) / static_cast<double>(load.cycles);
-  const double shortest = load.control_period_min / 160'000.0, longest = load.control_period_max / 160'000.0;
+  const double shortest = load.control_period_min / 80'000.0, longest = load.control_period_max / 80'000.0;
   std::printf(
       "22,400 edges/s, jittered: %llu seen, %llu lost, %.1f %% of the cycles (interrupts %.1f %%), control period "
       "%.2f to %.2f %%, %.2f x real time\n",
@@ -180,7 +180,7 @@ Driven drive_both(int ms) {
 
 // Both boards compute with integers. What differs is when an interrupt notes an edge: at once on the host, after 40 to
 // 300 cycles on the AVR, because it is shorter than another interrupt or waits for it. That is 0 to 5 ticks of 4 us of
-// a sample's 2500: 0.2 % of a velocity at most, and an edge within these cycles of a sample's begin counts in the next
+// a sample's 1250: 0.4 % of a velocity at most, and an edge within these cycles of a sample's begin counts in the next
 // one (its time moves with it). Setpoints depend on bytes alone and are equal. A PWM differs by Kp times the
 // velocity's, by a rounding, and by more only in the sample in which one board already lets go at standstill.
 TEST_F(Avr, ReportsWhatTheHostReportsToTheLatencyOfAnInterrupt) {

@@ -59,7 +59,8 @@ TEST(Drive, AnswersAStepWithinAQuarterOfASecond) {
     std::printf("motor of %.0f ms: within 5 %% after %d ms, overshoot %.1f %%\n", tau * 1e3, settled_ms,
                 100 * (highest / wanted - 1));
     EXPECT_LT(settled_ms, 250);
-    EXPECT_LT(highest, 1.25 * wanted);
+    // A motor alone is there before the first sample has seen it move; under the robot it is not.
+    EXPECT_LT(highest, (tau == kAlone ? 1.5 : 1.1) * wanted);
   }
 }
 

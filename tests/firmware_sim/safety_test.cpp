@@ -58,7 +58,7 @@ TEST(Safety, SilenceStopsItSmoothlyAndTheNextCommandGoesOn) {
     b.millisecond();
     const std::int16_t now = b.line.heard.setpoints[0];
     ASSERT_LE(now, last);
-    ASSERT_GE(now, last - 3667 / 20 * 2 - 20) << "two steps of the ramp between two reports";
+    ASSERT_GE(now, last - 3667 * 4 / kStopSteps - 20) << "four steps of the ramp between two reports";
     if (began_ms < 0 && now < last) began_ms = ms;
     if (ended_ms < 0 && now == 0) ended_ms = ms;
     last = now;
