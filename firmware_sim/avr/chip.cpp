@@ -6,6 +6,7 @@
 
 #include "firmware_sim/firmware/encoder.hpp"
 extern "C" {
+#include <avr_extint.h>
 #include <avr_ioport.h>
 #include <avr_uart.h>
 #include <sim_avr.h>
@@ -20,7 +21,6 @@ namespace {
 // Registers of the ATmega328P as addresses of data memory (data sheet, chapter 30).
 constexpr int kPcifr = 0x3b, kPortD = 0x2b, kGpior0 = 0x3e, kGpior1 = 0x4a;
 constexpr int kTccr0a = 0x44, kTccr1a = 0x80;
-constexpr std::array<int, 2> kPwmTimers{0x45, 0x81};            // TCCR0B, TCCR1B
 constexpr std::array<int, 4> kCompare{0x47, 0x48, 0x88, 0x8a};  // OCR0A, OCR0B, OCR1AL, OCR1BL
 constexpr std::array<int, 4> kControl{kTccr0a, kTccr0a, kTccr1a, kTccr1a};
 constexpr std::array<int, 4> kConnected{0x80, 0x20, 0x80, 0x20};  // COMnA1, COMnB1: the compare unit drives the pin
@@ -139,6 +139,7 @@ void Chip::boot() {
   last_sample_ = 0;
   clock_began_ = 0;
   avr_reset(avr_);
+  for (std::uint8_t pin = 0; pin < 2; ++pin) avr_extint_set_strict_lvl_trig(avr_, pin, 0);
   for (std::uint8_t wheel = 0; wheel < 4; ++wheel) apply({0, wheel, levels_[wheel]}, true);
   const std::uint64_t begun = avr_->cycle;
   while (clock_began_ == 0) {
@@ -146,10 +147,6 @@ void Chip::boot() {
     run_until(avr_->cycle + 1);
   }
   uart_->cycles_per_byte = kCyclesPerByte;
-  for (const int timer : kPwmTimers) {
-    const auto& write = avr_->io[AVR_DATA_TO_IO(timer)].w;
-    write.c(avr_, static_cast<avr_io_addr_t>(timer), 0, write.param);
-  }
   for (std::uint8_t wheel = 0; wheel < 4; ++wheel) apply({0, wheel, levels_[wheel]}, true);
   begin_ = line_is_free_ = clock_began_;
   slept_before_ = slept_;
