@@ -5,8 +5,9 @@
 // comes out depends on what goes in alone. Wheels: 0 front left, 1 front right, 2 rear left, 3 rear right.
 //
 // Cycles are those of the board's clock within the millisecond, 0 to 15,999. The serial line has 115,200 baud by name;
-// the controller's divider makes 117,647 of it, 1360 cycles a byte, and that is the pace of what it sends. Work that a
-// millisecond begins (commands that came before it, wheels every 10 ms) shows at its end in duty().
+// the controller's divider makes 117,647 of it, 1360 cycles a byte, and that is the pace of what it sends. A
+// millisecond begins with the commands that came before it and, every 5 ms, a sample of the wheels; the PWM of a
+// sample is on the motors one millisecond after it, on both boards.
 #pragma once
 
 #include <array>

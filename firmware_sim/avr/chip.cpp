@@ -6,6 +6,7 @@
 
 #include "firmware_sim/firmware/encoder.hpp"
 extern "C" {
+#include <avr_extint.h>
 #include <avr_ioport.h>
 #include <avr_uart.h>
 #include <sim_avr.h>
@@ -116,6 +117,11 @@ Chip::Chip(const std::string& elf) {
   for (avr_io_t* io = avr_->io_port; io != nullptr; io = io->next)
     if (std::strcmp(io->kind, "uart") == 0) uart_ = reinterpret_cast<avr_uart_t*>(io);
   if (uart_ == nullptr) throw std::runtime_error("this simavr's ATmega328P has no serial line");
+  for (std::size_t wheel = 0; wheel < 4; ++wheel)
+    for (std::size_t bit = 0; bit < 2; ++bit) {
+      const Pin pin = kEncoderPins[wheel][bit];
+      pins_[wheel][bit] = avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(pin.port), pin.bit);
+    }
   boot();
 }
 
@@ -133,6 +139,7 @@ void Chip::boot() {
   last_sample_ = 0;
   clock_began_ = 0;
   avr_reset(avr_);
+  for (std::uint8_t pin = 0; pin < 2; ++pin) avr_extint_set_strict_lvl_trig(avr_, pin, 0);
   for (std::uint8_t wheel = 0; wheel < 4; ++wheel) apply({0, wheel, levels_[wheel]}, true);
   const std::uint64_t begun = avr_->cycle;
   while (clock_began_ == 0) {
@@ -160,8 +167,7 @@ void Chip::apply(const EncoderEdge& edge, bool anew) {
   const unsigned changed = anew ? 3U : static_cast<unsigned>(levels_[edge.wheel] ^ edge.levels);
   for (int bit = 0; bit < 2; ++bit) {
     if ((changed >> bit & 1U) == 0) continue;
-    const Pin pin = kEncoderPins[edge.wheel][static_cast<std::size_t>(bit)];
-    avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(pin.port), pin.bit), edge.levels >> bit & 1U);
+    avr_raise_irq(pins_[edge.wheel][static_cast<std::size_t>(bit)], edge.levels >> bit & 1U);
   }
   Encoder counter;
   counter.levels = levels_[edge.wheel];

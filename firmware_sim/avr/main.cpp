@@ -90,11 +90,12 @@ namespace {
 void start() {
   DDRB = _BV(PB1) | _BV(PB2);
   DDRD = _BV(PD1) | _BV(PD2) | _BV(PD3) | _BV(PD4) | _BV(PD5) | _BV(PD6) | _BV(PD7);
-  // Phase-correct PWM, 8 bit, 3.9 kHz: 0 and 255 are exactly off and on, which fast PWM cannot do.
+  // Phase-correct PWM, 8 bit: 0 and 255 are exactly off and on, which fast PWM cannot do. 490 Hz, as Arduino's core has
+  // it.
   TCCR0A = _BV(COM0A1) | _BV(COM0B1) | _BV(WGM00);
-  TCCR0B = _BV(CS01);
+  TCCR0B = _BV(CS01) | _BV(CS00);
   TCCR1A = _BV(COM1A1) | _BV(COM1B1) | _BV(WGM10);
-  TCCR1B = _BV(CS11);
+  TCCR1B = _BV(CS11) | _BV(CS10);
   UCSR0A = _BV(U2X0);
   UBRR0 = 16;
   UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
@@ -133,6 +134,7 @@ void drive(const int16_t (&duty)[fw::kWheels]) {
 int main() {
   start();
   set_sleep_mode(SLEEP_MODE_IDLE);
+  bool has_sampled = false;
   for (uint8_t done = 0;; ++done) {
     cli();
     while (done == begun) {
@@ -143,7 +145,8 @@ int main() {
       cli();
     }
     sei();
-    if (firmware.work()) drive(firmware.duty());
+    if (has_sampled) drive(firmware.duty());  // with the timer, however long the sample took: no jitter
+    has_sampled = firmware.work();
     firmware.report();
   }
 }

@@ -7,8 +7,8 @@ namespace firmware {
 namespace {
 
 constexpr uint32_t kGain = 5000;
-// RPM/16 of a motor for 0.1 mm/s of a wheel's rim: 64 * 60 / (2 pi * 50 mm) * 16 / 10 = 19.55696, in 1/1024.
-constexpr int32_t kRpmPerTenth = 20026;
+// RPM/16 of a motor for 0.1 mm/s of a wheel's rim: 64 * 60 / (2 pi * 50 mm) * 16 / 10 = 19.55696, in 1/4096.
+constexpr int32_t kRpmPerTenth = 80105;
 constexpr int32_t kFastest = kRpmMax * kPerRpm;
 constexpr int32_t kTenthsMax = 16383;  // times kFastest stays below 2^31
 
@@ -23,9 +23,9 @@ Setpoints setpoints_for(int32_t vx, int32_t vy, int32_t omega) {
   for (const int32_t wheel : at.wheels) fastest = magnitude(wheel) > fastest ? magnitude(wheel) : fastest;
   for (; fastest > kTenthsMax; fastest /= 2)
     for (int32_t& wheel : at.wheels) wheel /= 2;
-  const bool is_in_reach = fastest * kRpmPerTenth / 1024 <= kFastest;
+  const bool is_in_reach = fastest * kRpmPerTenth / 4096 <= kFastest;
   for (int32_t& wheel : at.wheels)
-    wheel = is_in_reach ? rounded(wheel * kRpmPerTenth, 1024) : rounded(wheel * kFastest, fastest);
+    wheel = is_in_reach ? rounded(wheel * kRpmPerTenth, 4096) : rounded(wheel * kFastest, fastest);
   return at;
 }
 

@@ -115,6 +115,7 @@ class HostBoard final : public Board {
     firmware.tick();
     memory_->transmitter.wake(firmware);
     ++since_sample_ms_;
+    for (std::size_t wheel = 0; wheel < kWheels; ++wheel) duty_[wheel] = firmware.duty()[wheel];
     const bool is_sample = firmware.work();
     firmware.report();
     if (!is_sample) return;
@@ -122,7 +123,6 @@ class HostBoard final : public Board {
     if (has_sampled_) load_.control_period_min = load_.control_period_max = period;
     has_sampled_ = true;
     since_sample_ms_ = 0;
-    for (std::size_t wheel = 0; wheel < kWheels; ++wheel) duty_[wheel] = firmware.duty()[wheel];
   }
 
   std::optional<Memory> memory_;  ///< none while it is off
