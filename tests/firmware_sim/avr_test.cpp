@@ -3,13 +3,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "engine/base/random.hpp"
 #include "tests/firmware_sim/bench_robot.hpp"
 #include "tests/length.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim::firmware {
 namespace avr_test {
@@ -267,6 +267,20 @@ TEST_F(Avr, AFloodBeyondAnyLineLosesBytesAndSaysSo) {
   b.run(100);
   b.drive(protocol::XYIntVelocities{300, 0}, 300);
   EXPECT_NE(b.board->duty()[0], 0);
+}
+
+// Its input ends after some milliseconds, so it ends: as when it crashes, the board has lost it.
+TEST_F(Avr, AProgramThatEndsInMidRunIsAnErrorNotAHang) {
+  const test::Folder folder;
+  const std::string program = folder.file("short-lived");
+  std::ofstream(program) << "#!/bin/sh\ndd bs=1 count=120 2>/dev/null | " << kProgram << "\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const std::unique_ptr<Board> board = make_avr_board(program);
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 1000; ++i) board->advance({}, {});
+      },
+      std::runtime_error);
 }
 
 TEST(AvrMissing, SaysWhatItNeeds) {
