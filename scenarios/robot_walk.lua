@@ -75,7 +75,7 @@ Actions.addFrameAction(function()
     measure("handle_off_neutral_max", off, "m")
     measure("heading", robot.heading, "rad")
     local walks = simulation.frame * 0.001 > 2.5 and x < to - 0.1
-    local pushes = math.abs(device.position[1] - (to + 0.05 + p.push)) < 0.002
+    local pushes = math.min(device.position[1], (twin or device).position[1]) > to + 0.05 + p.push / 2
     if twin and walks then
       free, added = free + 1, added + (device.forces - twin.forces):length() ^ 2
       measure("added_force_rms", math.sqrt(added / free), "N")

@@ -14,7 +14,8 @@
 namespace verisim::script {
 namespace {
 
-constexpr const char* kWord = "Robot";
+constexpr const char* kRobotWord = "Robot";
+constexpr const char* kRemoteBase = "VRPNRemoteBase";
 /// Published gains are in the wire's units: mm/s for each m of error.
 constexpr double kGainUnit = 1000;
 
@@ -124,20 +125,20 @@ void read_place(Fields& fields, RobotNode& node) {
 }
 
 int robot_word(lua_State* L) {
-  check_building(L, kWord);
+  check_building(L, kRobotWord);
   ScriptState& state = ScriptState::of(L);
   Sandbox::charge(L, 1000 + 100 * state.companions.size());
   state.keep(100'000);  // lines, tracker, board
-  Fields fields(L, 1, kWord);
+  Fields fields(L, 1, kRobotWord);
   auto node = std::make_shared<RobotNode>();
-  node->word = kWord;
+  node->word = kRobotWord;
   node->place = where(L);
   node->name = fields.name().value_or("robot");
   node->tracker = node->name + "Tracker";
   node->server = fields.text("server").value_or(node->server);
   node->board = fields.text("board").value_or(node->board);
   if (node->board != "host" && node->board != "avr")
-    raise(L, "{}: board is '{}'{}", kWord, node->board, suggestion(node->board, {"host", "avr"}));
+    raise(L, "{}: board is '{}'{}", kRobotWord, node->board, suggestion(node->board, {"host", "avr"}));
   read_place(fields, *node);
   robot::RobotSettings& settings = node->settings;
   settings.pilot.server.gain = fields.not_negative("gain", kGainUnit * settings.pilot.server.gain) / kGainUnit;
@@ -291,7 +292,6 @@ RobotPointer robot_served_by(const ScriptState& state, const std::string& server
 
 // VRPNRemoteBase(device, x, z, "Robot@localhost").
 int remote_base(lua_State* L) {
-  constexpr const char* kRemoteBase = "VRPNRemoteBase";
   check_building(L, kRemoteBase);
   ScriptState& state = ScriptState::of(L);
   DevicePointer node = new_filter(L, device_at(L, 1, "VRPNRemoteBase: the device"));

@@ -1,5 +1,4 @@
 // The client of verisim-avr.
-#include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>

@@ -31,12 +31,12 @@ constexpr uint8_t kDirections[] = {_BV(PD2), _BV(PD3), _BV(PD4), _BV(PD7)};
 constexpr uint8_t kEncoderC = 0x3f;
 constexpr uint8_t kEncoderB = _BV(PB0) | _BV(PB3);
 
-struct Now {
+struct Stamp {
   uint16_t ms;
   uint8_t tick;
 };
 
-inline __attribute__((always_inline)) Now now() {
+inline __attribute__((always_inline)) Stamp stamp() {
   const uint8_t tick = TCNT2;
   uint16_t ms = firmware.now_ms();
   // The millisecond has ended but its interrupt still waits for this one.
@@ -52,7 +52,7 @@ inline __attribute__((always_inline)) uint8_t levels_b(uint8_t pins) {
 
 ISR(PCINT1_vect) {
   const uint8_t pins = PINC & kEncoderC;
-  const Now at = now();
+  const Stamp at = stamp();
   const uint8_t changed = pins ^ seen_c;
   seen_c = pins;
   if (changed & 0x03) encoders[0].edge(pins & 3, at.ms, at.tick);
@@ -62,7 +62,7 @@ ISR(PCINT1_vect) {
 
 ISR(PCINT0_vect) {
   const uint8_t pins = PINB;
-  const Now at = now();
+  const Stamp at = stamp();
   encoders[3].edge(levels_b(pins), at.ms, at.tick);
 }
 

@@ -3,13 +3,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "engine/base/random.hpp"
 #include "tests/firmware_sim/bench_robot.hpp"
 #include "tests/length.hpp"
+#include "tests/support/folder.hpp"
 
 namespace verisim::firmware {
 namespace avr_test {
@@ -94,7 +94,8 @@ TEST_F(Avr, At22400EdgesPerSecondLosesNoneAndHasTimeLeft) {
   EXPECT_LT(busy, 0.70);
   EXPECT_GT(shortest, 0.95);
   EXPECT_LT(longest, 1.05);
-  for (const std::int16_t velocity : line.heard.velocities) EXPECT_NEAR(velocity, 7000, 70);  // the jitter's share
+  // The edges that begin and end a sample's 27 or more intervals are each a quarter of one off: 1.9 %.
+  for (const std::int16_t velocity : line.heard.velocities) EXPECT_NEAR(velocity, 7000, 130);
   EXPECT_EQ(line.receiver.received().rejected, 0U);
 }
 
@@ -178,11 +179,12 @@ Driven drive_both(int ms) {
   return driven;
 }
 
-// Both boards compute with integers. What differs is when an interrupt notes an edge: at once on the host, after 40 to
-// 300 cycles on the AVR, because it is shorter than another interrupt or waits for it. That is 0 to 5 ticks of 4 us of
-// a sample's 1250: 0.4 % of a velocity at most, and an edge within these cycles of a sample's begin counts in the next
-// one (its time moves with it). Setpoints depend on bytes alone and are equal. A PWM differs by Kp times the
-// velocity's, by a rounding, and by more only in the sample in which one board already lets go at standstill.
+// Both boards compute with integers. What differs is when an interrupt notes an edge: at once on the host, after some
+// 60 cycles on the AVR, and up to 330 more if it waits for the longest other one. That is up to 6 ticks of 4 us in the
+// 1200 or more between the first and the last edge of a sample: 0.5 % of a velocity, 35 RPM at most. An edge within
+// these cycles of a sample's begin counts in the next one, and its time with it. Setpoints depend on bytes alone and
+// are equal. A PWM differs by Kp times the velocity's (2), its rounding (1), what the integral has of the last ones
+// (2), and by the 24 that overcome the bridge in the one sample in which one board already lets go.
 TEST_F(Avr, ReportsWhatTheHostReportsToTheLatencyOfAnInterrupt) {
   const Driven driven = drive_both(test::by_length(2000, 6000, 60'000));
   ASSERT_NEAR(static_cast<double>(driven.bytes_host), static_cast<double>(driven.bytes_avr), 12);
@@ -196,8 +198,8 @@ TEST_F(Avr, ReportsWhatTheHostReportsToTheLatencyOfAnInterrupt) {
       25.0 * static_cast<double>(d.velocities_differ) / static_cast<double>(d.frames), d.pwm,
       25.0 * static_cast<double>(d.pwm_differ) / static_cast<double>(d.frames));
   EXPECT_EQ(d.setpoint, 0);
-  EXPECT_LE(d.velocity, 14);
-  EXPECT_LE(d.pwm, 24 + 2);
+  EXPECT_LE(d.velocity, 35);
+  EXPECT_LE(d.pwm, 2 + 1 + 2 + 24);
 }
 
 TEST_F(Avr, TheSameInputGivesTheSameBytesAndCycles) {
@@ -265,6 +267,20 @@ TEST_F(Avr, AFloodBeyondAnyLineLosesBytesAndSaysSo) {
   b.run(100);
   b.drive(protocol::XYIntVelocities{300, 0}, 300);
   EXPECT_NE(b.board->duty()[0], 0);
+}
+
+// Its input ends after some milliseconds, so it ends: as when it crashes, the board has lost it.
+TEST_F(Avr, AProgramThatEndsInMidRunIsAnErrorNotAHang) {
+  const test::Folder folder;
+  const std::string program = folder.file("short-lived");
+  std::ofstream(program) << "#!/bin/sh\ndd bs=1 count=120 2>/dev/null | " << kProgram << "\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const std::unique_ptr<Board> board = make_avr_board(program);
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 1000; ++i) board->advance({}, {});
+      },
+      std::runtime_error);
 }
 
 TEST(AvrMissing, SaysWhatItNeeds) {

@@ -1,6 +1,6 @@
 // tests/firmware_sim/bench_robot.hpp
 // A robot on a test bench: four motors as first-order systems that turn encoders. Just enough to close the loop around
-// a board; the plant that scenes use is engine/robot.
+// a board; the plant that scenes use is another.
 #pragma once
 
 #include <algorithm>
