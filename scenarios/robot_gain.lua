@@ -11,7 +11,7 @@ local p = params{
   each = parameter(8, "s", "at each gain"),
 }
 local gains = {2500, 5000, 10000, 15000, 20000, 25000, 35000, 50000, 75000, 100000}   -- mm/s for each m of error
-defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 1, duration = p.each * #gains }
+defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 1, duration = p.each * #gains + 1 }
 
 local y, z = 1.0, 0.55
 local box = addObject{ name = "box", density = 200, voxelsize = 0.01, position = {0, y, z}, Solid.box{0.1, 0.1, 0.1} }

@@ -8,7 +8,7 @@
 -- by the base alone.
 local p = params{
   board = parameter("host", "", "of the robot: host, or avr (needs gcc-avr, avr-libc and simavr)"),
-  gain = parameter(25000, "", "of the robot server: mm/s for each m of error"),
+  gain = parameter(10000, "", "of the robot server: mm/s for each m of error"),
   predict = parameter(true, "", "where the base is now, of the tracker's late reports; false: the last report itself"),
   twin = parameter(true, "", "the same person with a device that reaches everywhere"),
   distance = parameter(3, "m", "of the walk"),

@@ -2,7 +2,7 @@
 -- (dissertation section 5.5, "no specific safeties"). The room is METaL's: 4 x 3 m. Another seed is another walk.
 --   ./run scenarios/robot_wall.lua --set gain=100000 --set dropouts=0.5 --seed 7
 local p = params{
-  gain = parameter(25000, "", "of the robot server: mm/s for each m of error"),
+  gain = parameter(10000, "", "of the robot server: mm/s for each m of error"),
   walls = parameter(true, "", "false: the published system, which has none"),
   board = parameter("host", "", "of the robot: host, or avr"),
   delay = parameter(0.02, "s", "of the room's tracker"),
@@ -19,7 +19,7 @@ for _ = 1, p.legs do                                      -- often to places tha
   path[#path + 1] = {position = {(2 * math.random() - 1) * 1.3 * half[1], y, z + (2 * math.random() - 1) * 1.3 * half[2]},
     speed = p.speed * (0.5 + math.random())}
 end
-local person = Devices.Hand{ name = "person", path = path, tremor = 0.0003, lead = 0.3, patience = 1 }
+local person = Devices.Hand{ name = "person", path = path, tremor = 0.0003, lead = 0.3, patience = 1, greatestForce = 20 }
 local robot = Robot{ name = "robot", board = p.board, gain = p.gain, device = {0, y, 0},
   tracker = {name = "ART", delay = p.delay, dropouts = p.dropouts},
   walls = p.walls and {min = {-half[1], 0, -half[2]}, max = {half[1], 0, half[2]}, radius = radius} or nil }

@@ -24,7 +24,8 @@ class Companion {
   [[nodiscard]] virtual double duration() const = 0;
   /// Adds what is recorded of it. Called once, before the first frame; the getters live as long as the companion.
   virtual void declare(Columns& columns) const = 0;
-  /// Says what began or ended in the last frame. No allocation.
+  /// Says what began or ended in the last frame; each text goes on behind its kind: "tracker", "has lost the base". No
+  /// allocation.
   virtual void report(PartNotes& /*notes*/) {}
 };
 

@@ -14,7 +14,7 @@ class PartNotes {
   static constexpr std::size_t kMax = 32;
   struct Note {
     const char* kind;
-    const char* text;  ///< behind the part's name
+    const char* text;  ///< behind the part's name, or the kind
   };
   /// No allocation. @pre there are fewer than kMax in this frame: two of each part of a chain
   void add(const char* kind, const char* text) {

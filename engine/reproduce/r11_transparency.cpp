@@ -19,10 +19,11 @@ struct Setting {
 };
 const std::vector<Setting>& settings() {
   static const std::vector<Setting> kAll = {
-      {"gain 25000, estimated base", {}},
-      {"gain 25000, last report of the tracker", {{"predict", "false"}}},
+      {"gain 10000, estimated base", {}},
+      {"gain 10000, last report of the tracker", {{"predict", "false"}}},
       {"gain 5000, estimated base", {{"gain", "5000"}}},
-      {"gain 25000, walk of 0.57 m/s", {{"walk", "0.57"}}},
+      {"gain 25000, estimated base", {{"gain", "25000"}}},
+      {"gain 10000, walk of 0.57 m/s", {{"walk", "0.57"}}},
   };
   return kAll;
 }

@@ -4,7 +4,7 @@ namespace verisim {
 namespace {
 
 std::string text_of_companion(const World& world, const Note& note) {
-  return world.companions[note.first]->name() + " " + note.detail;
+  return fmt::format("{}: {} {}", world.companions[note.first]->name(), note.kind, note.detail);
 }
 
 }  // namespace
