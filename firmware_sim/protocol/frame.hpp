@@ -87,7 +87,7 @@ class Receiver {
   uint8_t append(const uint8_t* bytes, uint8_t count) {
     const auto space = static_cast<uint8_t>(kCapacity - buffered_);
     const uint8_t taken = count < space ? count : space;
-    __builtin_memcpy(buffer_ + buffered_, bytes, taken);
+    if (taken > 0) __builtin_memcpy(buffer_ + buffered_, bytes, taken);  // nothing may stand at a null pointer
     buffered_ = static_cast<uint8_t>(buffered_ + taken);
     return taken;
   }

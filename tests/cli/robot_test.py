@@ -37,6 +37,10 @@ class RobotTest(unittest.TestCase):
             keys = ("message", "id", "args", "bits")
             self.assertEqual(read, [{key: entry[key] for key in keys if key in entry} for entry in own])
 
+    def test_each_command_explains_itself_with_an_example(self):
+        for command in ("decode", "encode"):
+            self.assertIn(b"Example:", robot(command, "--help").stdout)
+
     def test_numbers_are_written_as_people_write_them(self):
         self.assertEqual(robot("encode", "ComputerToRobot", "XYFloatError", "1", "-1").stdout.hex(),
                          "010002" "0000803f" "000080bf" "030404")
