@@ -23,6 +23,8 @@ struct PilotSettings {
   RobotServerSettings server;
   DriveLawSettings drive;
   std::optional<WallSettings> walls;
+  double acceleration = 2;          ///< m/s^2: rollers slip from 2.1 on (mu g / sqrt 2). Walls brake harder
+  double angular_acceleration = 8;  ///< rad/s^2
 };
 
 class Pilot {
@@ -52,9 +54,14 @@ class Pilot {
   void report(RobotNotes& notes);
 
  private:
+  /// Toward `to`, by what the rollers can hold in a millisecond.
+  [[nodiscard]] PlanarTwist ramped(const PlanarTwist& to) const;
+
+  double step_, angular_step_;  ///< m/s and rad/s in a millisecond
   RobotServer server_;
   DriveLaw drive_;
   std::optional<Walls> walls_;
+  PlanarTwist ramp_;
   std::array<double, 2> error_R_{};
 };
 

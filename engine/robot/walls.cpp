@@ -13,6 +13,8 @@ namespace verisim::robot {
 namespace {
 
 constexpr double kWallStep = 0.001;       // s: one call
+constexpr double kReturnRate = 5;   // 1/s
+constexpr double kReturnMost = 0.1;  // m/s
 constexpr double kRounding = 0.001;       // m/s: half a mm/s in x and y, on the diagonal, is 0.71
 constexpr double kDirectionKnown = 0.7;   // rad
 constexpr std::uint64_t kHistory = 4096;  // ms
@@ -127,6 +129,17 @@ void Walls::command(Wall& wall, double c) {
   wall.went += wall.e * kWallStep;
 }
 
+/// Who pulls at the device can pull the base along, and its wheels slip: within the margin it drives away from the wall.
+void Walls::come_back(Vector2& v, const TrackedBase& tracked) const {
+  if (!tracked.is_valid) return;
+  for (const Wall& wall : walls_) {
+    const double inside = wall.d - wall.n[0] * tracked.pose.x - wall.n[1] * tracked.pose.y - settings_.radius;
+    if (inside >= settings_.margin) continue;
+    const double away = std::min(kReturnRate * (settings_.margin - inside), kReturnMost) + dot(wall.n, v);
+    for (std::size_t i = 0; i < 2; ++i) v[i] -= std::max(0.0, away) * wall.n[i];
+  }
+}
+
 /// Toward each wall no more than allowed: what is too much is taken away along its normal, so that the base slides
 /// along.
 void Walls::slide(Vector2& v) const {
@@ -162,6 +175,7 @@ PlanarTwist Walls::limit(const PlanarTwist& wanted, const TrackedBase& tracked) 
     measure(wall, tracked);
     wall.asked = dot(wall.n, v);
   }
+  come_back(v, tracked);
   slide(v);
   const bool moves = v[0] != 0 || v[1] != 0;
   bool is_holding = false;

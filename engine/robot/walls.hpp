@@ -24,6 +24,8 @@
 // While the base turns, the direction of a command is known within delta = yaw_error + omega_max (age + delay + 2 lag).
 // A command counts at its worst within that, and 1 mm/s more for rounding: c = v . n + delta |v| + 1 mm/s.
 //
+// What pulls the base along against its motors is not in the bound: within the margin it is driven back.
+//
 // A server that is killed leaves its command in force until the firmware's watchdog acts: `delay` has to hold that time
 // too (0.36 s: 250 ms, then to 0 within 200 ms) where walls shall hold then as well.
 #pragma once
@@ -96,6 +98,7 @@ class Walls {
     std::vector<double> history;   ///< ring: `went` of each millisecond
   };
   void measure(Wall& wall, const TrackedBase& tracked) const;
+  void come_back(std::array<double, 2>& v, const TrackedBase& tracked) const;
   void slide(std::array<double, 2>& v) const;
   void command(Wall& wall, double c);
   [[nodiscard]] double stop(double v) const;
