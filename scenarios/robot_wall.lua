@@ -9,6 +9,7 @@ local p = params{
   dropouts = parameter(0.2, "1/s", "of the tracker, 0.3 s each in the mean"),
   speed = parameter(0.4, "m/s", "of the walk"),
   legs = parameter(12, "", "of the walk"),
+  pull = parameter(10, "N", "at most, of the person at the device; 20 N at arm's length turn and drag the base, whatever its motors do"),
 }
 defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 1 }
 local y, z, radius = 1.0, 0.55, 0.27                      -- m; radius: of a disc around the base
@@ -19,7 +20,7 @@ for _ = 1, p.legs do                                      -- often to places tha
   path[#path + 1] = {position = {(2 * math.random() - 1) * 1.3 * half[1], y, z + (2 * math.random() - 1) * 1.3 * half[2]},
     speed = p.speed * (0.5 + math.random())}
 end
-local person = Devices.Hand{ name = "person", path = path, tremor = 0.0003, lead = 0.3, patience = 1, greatestForce = 20 }
+local person = Devices.Hand{ name = "person", path = path, tremor = 0.0003, lead = 0.3, patience = 1, greatestForce = p.pull }
 local robot = Robot{ name = "robot", board = p.board, gain = p.gain, device = {0, y, 0},
   tracker = {name = "ART", delay = p.delay, dropouts = p.dropouts},
   walls = p.walls and {min = {-half[1], 0, -half[2]}, max = {half[1], 0, half[2]}, radius = radius} or nil }

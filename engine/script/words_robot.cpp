@@ -18,6 +18,8 @@ constexpr const char* kRobotWord = "Robot";
 constexpr const char* kRemoteBase = "VRPNRemoteBase";
 /// Published gains are in the wire's units: mm/s for each m of error.
 constexpr double kGainUnit = 1000;
+/// m: more than the tracker is off, and than who pulls at the device with 20 N makes the wheels slip.
+constexpr double kMarginOfPull = 0.03;
 
 robot::EncoderSamples read_encoder_samples(Inputs& inputs, const std::string& name) {
   const Trace trace = parse_trace(name, inputs.read(name), "encoder", {});
@@ -103,7 +105,7 @@ void read_walls(lua_State* L, Fields& fields, RobotNode& node) {
   robot::WallSettings room;
   room.corners = robot::rectangle(min->x(), max->x(), -max->z(), -min->z());
   room.radius = walls.positive("radius").value_or(room.radius);
-  room.margin = walls.not_negative("margin", room.margin);
+  room.margin = walls.not_negative("margin", kMarginOfPull);
   room.force_max = walls.not_negative("force", room.force_max);
   node.settings.pilot.walls = std::move(room);
   walls.finish(false);
