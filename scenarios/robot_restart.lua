@@ -7,7 +7,7 @@ local p = params{
 }
 defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 1, duration = 4 + 8 * (p.off + 10) + 1 }
 local y, z = 1.0, 0.55
-local person = Devices.Hand{ name = "person", loop = true, path = {{position = {0, y, z}}, {position = {0.5, y, z}, speed = 0.15}} }
+local person = Devices.Hand{ name = "person", loop = true, path = {{position = {0, y, z}}, {position = {0.5, y, z}, speed = 0.3}} }
 local robot = Robot{ name = "robot", board = p.board, gain = 10000, device = {0, y, 0}, tracker = {name = "ART"} }
 local device = Devices.Haption.Virtuose6D3545{ name = "virtuose", base = robot, operator = person, stops = true }
 device = TrackedTransform(VRPNRemoteBase(device, 0, z, "Robot@localhost"), "ART")

@@ -67,8 +67,8 @@ class RemoteBase final : public ForwardingDevice {
   }
   void declare(Columns& columns) const override {
     ForwardingDevice::declare(columns);
-    columns.add("/state/device/" + name() + "/base_error", "m", "handle from the neutral place, along x and z of the base",
-                [this] { return error_; });
+    columns.add("/state/device/" + name() + "/base_error", "m",
+                "handle from the neutral place, along x and z of the base", [this] { return error_; });
   }
 
  private:

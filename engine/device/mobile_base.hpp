@@ -22,9 +22,9 @@ namespace verisim {
 /// SPARTA's VRPNRemoteBase(device, x, z, server): drives the base by gain (p_BH - neutral) along x and z. It changes
 /// nothing of what goes through it, but that the hand feels the base's limit where the base has one.
 struct RemoteBaseDescription {
-  double neutral_x = 0, neutral_z = 0;    ///< m, of the handle in B; SPARTA's scripts: 0, 0.55 for the Virtuose
-  std::shared_ptr<const double> gain;     ///< read in every frame: a script may change it
-  std::string server;                     ///< whom it drives, for the chain's words
+  double neutral_x = 0, neutral_z = 0;  ///< m, of the handle in B; SPARTA's scripts: 0, 0.55 for the Virtuose
+  std::shared_ptr<const double> gain;   ///< read in every frame: a script may change it
+  std::string server;                   ///< whom it drives, for the chain's words
 };
 /// Records `base_error` [m], before the gain. @pre inner, base and gain are not null; neutral is finite. 20 ns.
 [[nodiscard]] std::shared_ptr<Device> make_remote_base(std::shared_ptr<Device> inner, std::shared_ptr<MovingBase> base,

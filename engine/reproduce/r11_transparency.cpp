@@ -44,7 +44,8 @@ Walks walk(const Workshop& workshop, std::size_t number, const Setting& setting,
     walks.added.push_back(run.measure("added_force_rms"));
     walks.stiffness.push_back(run.measure("stiffness_felt"));
     walks.off.push_back(run.measure("handle_off_neutral_max"));
-    csv += fmt::format("{},{},{},{},{}\n", seed, walks.added.back(), walks.stiffness.back(), walks.off.back(), run.state_hash);
+    csv += fmt::format("{},{},{},{},{}\n", seed, walks.added.back(), walks.stiffness.back(), walks.off.back(),
+                       run.state_hash);
   }
   write_text(walks.csv_file, csv, workshop.force);
   return walks;
@@ -65,14 +66,21 @@ std::vector<Row> r11_transparency(const Workshop& workshop) {
     const Setting& setting = settings()[i];
     const Walks walks = walk(workshop, i, setting, workshop.quick ? 2 : 10);
     const std::string where = fmt::format(", {}", setting.what);
-    rows.push_back(row_of("force added in free motion, rms" + where, "N", std::string("subjectively light"), walks.added,
-                          "beside the same hand with a device that reaches everywhere", walks));
-    rows.push_back(row_of("stiffness felt against a wall, to that without base" + where, "", std::string("subjectively comparable"),
-                          walks.stiffness, "mean forces while the hand pushes 20 mm into the fence", walks));
+    rows.push_back(row_of("force added in free motion, rms" + where, "N", std::string("subjectively light"),
+                          walks.added, "beside the same hand with a device that reaches everywhere", walks));
+    rows.push_back(row_of("stiffness felt against a wall, to that without base" + where, "",
+                          std::string("subjectively comparable"), walks.stiffness,
+                          "mean forces while the hand pushes 20 mm into the fence", walks));
     const double most = *std::max_element(walks.off.begin(), walks.off.end());
-    rows.push_back({"R11", "handle furthest from its neutral place" + where, "m", std::string("free movement in the entire area"), most, {},
-                    fmt::format("the Virtuose's workspace ends at {} m: {}", kReach, most < kReach ? "within" : "beyond"),
-                    {walks.run_file, walks.csv_file}});
+    rows.push_back(
+        {"R11",
+         "handle furthest from its neutral place" + where,
+         "m",
+         std::string("free movement in the entire area"),
+         most,
+         {},
+         fmt::format("the Virtuose's workspace ends at {} m: {}", kReach, most < kReach ? "within" : "beyond"),
+         {walks.run_file, walks.csv_file}});
   }
   return rows;
 }

@@ -18,8 +18,8 @@ namespace {
 constexpr double kRate = 22'400;  // edges a second, all four wheels
 constexpr const char* kBoard = "ATmega328P at 16 MHz under simavr";
 
-/// Edges of four wheels that turn at one speed, each edge misplaced by up to a quarter of its period at random: a steady
-/// phase would hide losses.
+/// Edges of four wheels that turn at one speed, each edge misplaced by up to a quarter of its period at random: a
+/// steady phase would hide losses.
 class JitteredEdges {
  public:
   explicit JitteredEdges(double edges_per_second) : period_(4 * firmware::kClockHz / edges_per_second) {
@@ -79,13 +79,24 @@ std::vector<Row> board_rows(const Workshop& workshop) {
   write_text(file, csv, workshop.force);
   const double handled = kRate * (1 - static_cast<double>(load.edges_lost) / static_cast<double>(load.edges_seen));
   std::vector<Row> rows;
-  rows.push_back({"R8", "encoder interrupts handled at 7000 RPM", "1/s", kRate, handled, {},
-                  fmt::format("{}, jittered edges; {} of {} lost, {:.1f} % of the cycles used, {:.1f} % in interrupts", kBoard,
-                              load.edges_lost, load.edges_seen, percent(load.busy_cycles, load.cycles),
+  rows.push_back({"R8",
+                  "encoder interrupts handled at 7000 RPM",
+                  "1/s",
+                  kRate,
+                  handled,
+                  {},
+                  fmt::format("{}, jittered edges; {} of {} lost, {:.1f} % of the cycles used, {:.1f} % in interrupts",
+                              kBoard, load.edges_lost, load.edges_seen, percent(load.busy_cycles, load.cycles),
                               percent(load.interrupt_cycles, load.cycles)),
                   {file}});
-  rows.push_back({"R8", "first rate at which an edge is lost", "1/s", std::string("not reported"), lost_at, {},
-                  "in steps of 10,000 a second, jittered", {file}});
+  rows.push_back({"R8",
+                  "first rate at which an edge is lost",
+                  "1/s",
+                  std::string("not reported"),
+                  lost_at,
+                  {},
+                  "in steps of 10,000 a second, jittered",
+                  {file}});
   return rows;
 }
 
@@ -108,12 +119,33 @@ std::vector<Row> r8_firmware(const Workshop& workshop) {
   try {
     rows = board_rows(workshop);
   } catch (const Error& error) {
-    rows.push_back({"R8", "encoder interrupts handled at 7000 RPM", "1/s", kRate, std::string("not measured"), {}, error.what(), {}});
+    rows.push_back({"R8",
+                    "encoder interrupts handled at 7000 RPM",
+                    "1/s",
+                    kRate,
+                    std::string("not measured"),
+                    {},
+                    error.what(),
+                    {}});
   }
-  rows.push_back({"R8", "top speed of the robot", "m/s", 0.57, top_speed(16), {},
-                  "the firmware holds the motors at 7000 RPM, which by the wheels is 0.5727 m/s; 16 V, so that they reach it", {}});
-  rows.push_back({"R8", "top speed of the robot at 12 V", "m/s", std::string("not reported"), top_speed(12), {},
-                  "12 V less the L298's drop and the battery's, against bearings, gears and rollers, do not reach 7000 RPM", {}});
+  rows.push_back(
+      {"R8",
+       "top speed of the robot",
+       "m/s",
+       0.57,
+       top_speed(16),
+       {},
+       "the firmware holds the motors at 7000 RPM, which by the wheels is 0.5727 m/s; 16 V, so that they reach it",
+       {}});
+  rows.push_back(
+      {"R8",
+       "top speed of the robot at 12 V",
+       "m/s",
+       std::string("not reported"),
+       top_speed(12),
+       {},
+       "12 V less the L298's drop and the battery's, against bearings, gears and rollers, do not reach 7000 RPM",
+       {}});
   return rows;
 }
 

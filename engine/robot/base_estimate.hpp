@@ -1,12 +1,13 @@
 // Where the base is now, of reports that are late and come 60 times a second. The pose goes into the haptic loop, which
-// feels every jump: at 0.45 m/s a report later moves the handle by 7.5 mm at once, and a coupling of 300 N/m renders 2 N.
+// feels every jump: at 0.45 m/s a report later moves the handle by 7.5 mm at once, and a coupling of 300 N/m renders 2
+// N.
 //
 //   at a report that was taken at time s, with innovation e = z - x(s):   x += alpha e,   v += beta e / T
 //   at any time t:   y(t) = x(s) + v min(t - s, horizon) + o(t),   o decays by exp(-t / smoothing)
 //
 // The alpha-beta filter (Kalata 1984: beta = alpha^2 / (2 - alpha) for a base that accelerates at random), then a
-// straight line to now. What a report corrects is taken up by o, so that y is continuous. Floor coordinates F: x, y [m],
-// theta [rad], continuous over whole turns. No allocation; 30 ns a step.
+// straight line to now. What a report corrects is taken up by o, so that y is continuous. Floor coordinates F: x, y
+// [m], theta [rad], continuous over whole turns. No allocation; 30 ns a step.
 #pragma once
 
 #include <array>
@@ -44,6 +45,8 @@ class BaseEstimate {
   Place x_, v_{}, offset_{}, now_;
 };
 
-[[nodiscard]] inline BaseEstimate::Place place_of(const PlanarPose& pose) { return {pose.x, pose.y, pose.theta}; }
+[[nodiscard]] inline BaseEstimate::Place place_of(const PlanarPose& pose) {
+  return {pose.x, pose.y, pose.theta};
+}
 
 }  // namespace verisim::robot

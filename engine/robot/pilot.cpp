@@ -14,8 +14,8 @@ Pilot::Pilot(const PilotSettings& settings)
       server_(settings.server),
       drive_(settings.drive) {
   if (!(settings.acceleration > 0) || !(settings.angular_acceleration > 0))
-    fail(ErrorKind::input, "pilot: accelerations are {} m/s^2 and {} rad/s^2 but must be above 0", settings.acceleration,
-         settings.angular_acceleration);
+    fail(ErrorKind::input, "pilot: accelerations are {} m/s^2 and {} rad/s^2 but must be above 0",
+         settings.acceleration, settings.angular_acceleration);
   if (settings.walls) walls_.emplace(*settings.walls);
 }
 

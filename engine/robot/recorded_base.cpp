@@ -10,8 +10,6 @@
 namespace verisim::robot {
 namespace {
 
-
-
 Counts rounded(const std::array<double, 4>& counts) {
   Counts whole{};
   for (std::size_t i = 0; i < whole.size(); ++i) whole[i] = static_cast<std::int64_t>(std::floor(counts[i] + 0.5));
@@ -81,13 +79,15 @@ void RecordedBase::advance(double t) {
 
 void RecordedBase::declare(Columns& columns) const {
   const std::string state = "/state/robot/" + name() + "/";
-  columns.add(state + "pose", "m, m, rad", "middle of the wheels on the floor: x, y (the world's -z), heading; recorded",
+  columns.add(state + "pose", "m, m, rad",
+              "middle of the wheels on the floor: x, y (the world's -z), heading; recorded",
               [this] { return place_of(place_); });
   columns.add(state + "tracked_pose", "m, m, rad", "the same, as the tracker and the estimate from it say",
               [this] { return estimate_.place(); });
   columns.add(state + "tracked", "1", "1: the tracker's last report is not too old",
               [this] { return tracker_.tracked().is_valid; });
-  columns.add(state + "encoder", "1", "recorded counts of the motors' encoders", [this] { return samples_.counts[row_]; });
+  columns.add(state + "encoder", "1", "recorded counts of the motors' encoders",
+              [this] { return samples_.counts[row_]; });
 }
 
 }  // namespace verisim::robot

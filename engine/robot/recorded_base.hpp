@@ -15,9 +15,9 @@ namespace verisim::robot {
 
 /// An encoder trace: rows in time, the first at 0.
 struct EncoderSamples {
-  std::vector<double> t;                        ///< s
-  std::vector<std::array<double, 4>> counts;    ///< cumulative, FL FR RL RR
-  std::vector<std::array<double, 3>> pose;      ///< x, y, theta; empty: not known
+  std::vector<double> t;                      ///< s
+  std::vector<std::array<double, 4>> counts;  ///< cumulative, FL FR RL RR
+  std::vector<std::array<double, 3>> pose;    ///< x, y, theta; empty: not known
 };
 
 class RecordedBase final : public Companion, public MovingBase {

@@ -1,5 +1,6 @@
 #include "engine/robot/robot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,10 +10,12 @@
 namespace verisim::robot {
 namespace {
 
-constexpr std::size_t kEdgesMax = 256;    // in a millisecond: Edges has room for as many
+constexpr std::size_t kEdgesMax = 256;  // in a millisecond: Edges has room for as many
 
 /// To R of a vector in B.
-Vector3d in_R(const Vector3d& v_B) { return {v_B.x(), -v_B.z(), v_B.y()}; }
+Vector3d in_R(const Vector3d& v_B) {
+  return {v_B.x(), -v_B.z(), v_B.y()};
+}
 
 /// The board's divider makes another rate of the line's than its name says: 117,647 baud for 115,200.
 constexpr std::uint32_t kBoardBaud = 10 * firmware::kClockHz / firmware::kCyclesPerByte;
@@ -27,7 +30,9 @@ SerialLineSettings from_board(SerialLineSettings line) {
   return line;
 }
 
-PlanarPose planar(const BaseEstimate::Place& place) { return {place[0], place[1], place[2]}; }
+PlanarPose planar(const BaseEstimate::Place& place) {
+  return {place[0], place[1], place[2]};
+}
 
 }  // namespace
 
@@ -137,10 +142,14 @@ void Robot::declare(Columns& columns) const {
               [this] { return estimate_.place(); });
   columns.add(state + "tracked", "1", "1: the tracker's last report is not too old",
               [this] { return tracker_.tracked().is_valid; });
-  columns.add(state + "error", "m", "of the handle from its neutral place, times the device's gain; the robot's x and y",
+  columns.add(state + "error", "m",
+              "of the handle from its neutral place, times the device's gain; the robot's x and y",
               [this] { return pilot_.error_R(); });
   columns.add(state + "command", "m/s, m/s, rad/s", "asked of the robot by its server; the robot's x, y, rotation",
-              [this] { return std::array{pilot_.server().in_force().vx, pilot_.server().in_force().vy, pilot_.server().in_force().omega}; });
+              [this] {
+                return std::array{pilot_.server().in_force().vx, pilot_.server().in_force().vy,
+                                  pilot_.server().in_force().omega};
+              });
   columns.add(state + "setpoint", "rpm", "of the motors, as the robot reported last: FL, FR, RL, RR", [this] {
     std::array<double, kWheels> all{};
     for (std::size_t i = 0; i < kWheels; ++i) all[i] = pilot_.server().telemetry().setpoint[i];
@@ -163,6 +172,17 @@ void Robot::declare(Columns& columns) const {
   columns.add(state + "slips", "1", "1: the four wheels' speeds fit no motion of the base",
               [this] { return slipping_.is_on(); });
   columns.add(state + "supply", "V", "of the battery under load", [this] { return plant_.state().supply_voltage; });
+  if (pilot_.walls()) {
+    columns.add(state + "room_left", "m",
+                "in front of the nearest wall, less what the base may have gone since; -100: nothing is known",
+                [this] { return std::max(-100.0, pilot_.walls()->room_left()); });
+    columns.add(state + "held_back", "1", "1: walls allow less than was asked for",
+                [this] { return pilot_.walls()->is_limiting(); });
+  }
+  columns.add(cost + "tipping", "1", "substeps of the plant in which a wheel carried nothing, since the beginning",
+              [this] { return plant_.tipping(); });
+  columns.add(cost + "edges_left_out", "1", "edges of the encoders for which there was no room, since the beginning",
+              [this] { return plant_.edges_dropped(); });
   columns.add(cost + "busy_cycles", "1", "of the board's processor since the beginning; host: 0",
               [this] { return board_->load().busy_cycles; });
   columns.add(cost + "edges_lost", "1", "of the encoders, by the board's processor",

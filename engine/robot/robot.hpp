@@ -6,8 +6,8 @@
 // A frame that is longer holds several of them, one that is shorter none; what stands on the base in the meantime is
 // carried on by the velocity that it has.
 //
-// Coordinates. World W: y up. Floor F: x as the world's, y as its -z, heading counter-clockwise seen from above. Robot R:
-// x forward, y left. Base B: the device's, as it is bolted to the robot: x along R's x, y up, z along R's -y. SI.
+// Coordinates. World W: y up. Floor F: x as the world's, y as its -z, heading counter-clockwise seen from above. Robot
+// R: x forward, y left. Base B: the device's, as it is bolted to the robot: x along R's x, y up, z along R's -y. SI.
 #pragma once
 
 #include <array>
@@ -34,13 +34,13 @@ namespace verisim::robot {
 
 struct RobotSettings {
   std::string name = "robot";
-  PlanarPose start;                ///< of the middle of the wheels, F
-  Vector3d device{0, 0, 0.80};     ///< p_RB, m: where the device is bolted to its stand; a working height, estimated
+  PlanarPose start;             ///< of the middle of the wheels, F
+  Vector3d device{0, 0, 0.80};  ///< p_RB, m: where the device is bolted to its stand; a working height, estimated
   PlantParameters plant;
-  PilotSettings pilot;             ///< server, drive law and walls; the neutral place is the device's filter's
-  SerialLineSettings line;         ///< both directions; `baud` is the host's, receiver_baud the board's own
+  PilotSettings pilot;      ///< server, drive law and walls; the neutral place is the device's filter's
+  SerialLineSettings line;  ///< both directions; `baud` is the host's, receiver_baud the board's own
   BaseTrackerSettings tracker;
-  EstimateParameters estimate;     ///< of where the base is now, of the tracker's reports
+  EstimateParameters estimate;  ///< of where the base is now, of the tracker's reports
   std::uint64_t seed = 1;
 };
 
@@ -92,12 +92,12 @@ class Robot final : public Companion, public MovingBase {
   Pilot pilot_;
   SlipDetector slip_;
   std::function<std::optional<std::array<double, 2>>()> head_;
-  std::uint64_t done_ = 0;  ///< ms
+  std::uint64_t done_ = 0;                    ///< ms
   std::vector<firmware::EncoderEdge> edges_;  ///< of the last millisecond
-  std::array<double, 2> error_D_{};  ///< m
-  Wrench load_B_;           ///< summed over the frames since the last millisecond
-  std::uint32_t loads_ = 0;  ///< frames
-  Reaction reaction_;        ///< their mean
+  std::array<double, 2> error_D_{};           ///< m
+  Wrench load_B_;                             ///< summed over the frames since the last millisecond
+  std::uint32_t loads_ = 0;                   ///< frames
+  Reaction reaction_;                         ///< their mean
   Pose X_WB_, tracked_X_WB_;
   Vector3d limit_B_ = Vector3d::Zero();
   Spell slipping_{"robot", "slips: its wheels turn as no motion of the base turns them", "rolls again"};

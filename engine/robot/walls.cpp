@@ -13,8 +13,8 @@ namespace verisim::robot {
 namespace {
 
 constexpr double kWallStep = 0.001;       // s: one call
-constexpr double kReturnRate = 5;   // 1/s
-constexpr double kReturnMost = 0.1;  // m/s
+constexpr double kReturnRate = 5;         // 1/s
+constexpr double kReturnMost = 0.1;       // m/s
 constexpr double kRounding = 0.001;       // m/s: half a mm/s in x and y, on the diagonal, is 0.71
 constexpr double kDirectionKnown = 0.7;   // rad
 constexpr std::uint64_t kHistory = 4096;  // ms
@@ -129,7 +129,8 @@ void Walls::command(Wall& wall, double c) {
   wall.went += wall.e * kWallStep;
 }
 
-/// Who pulls at the device can pull the base along, and its wheels slip: within the margin it drives away from the wall.
+/// Who pulls at the device can pull the base along, and its wheels slip: within the margin it drives away from the
+/// wall.
 void Walls::come_back(Vector2& v, const TrackedBase& tracked) const {
   if (!tracked.is_valid) return;
   for (const Wall& wall : walls_) {

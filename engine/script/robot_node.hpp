@@ -14,15 +14,15 @@ namespace verisim::script {
 
 struct RobotNode : CompanionNode {
   robot::RobotSettings settings;
-  std::string board = "host";   ///< "host" or "avr"
-  std::string server = "Robot"; ///< by which VRPNRemoteBase names it
-  std::string tracker;          ///< by which TrackedTransform names its tracker
-  std::string trace;            ///< an encoder trace that it follows instead; empty: none
+  std::string board = "host";           ///< "host" or "avr"
+  std::string server = "Robot";         ///< by which VRPNRemoteBase names it
+  std::string tracker;                  ///< by which TrackedTransform names its tracker
+  std::string trace;                    ///< an encoder trace that it follows instead; empty: none
   std::shared_ptr<CompanionNode> head;  ///< whose line of sight it keeps out of; null: none
 
-  std::shared_ptr<robot::Robot> robot;     ///< null until made, and if a trace moves it
-  std::shared_ptr<MovingBase> base;        ///< null until made
-  std::shared_ptr<Companion> companion;    ///< the same
+  std::shared_ptr<robot::Robot> robot;   ///< null until made, and if a trace moves it
+  std::shared_ptr<MovingBase> base;      ///< null until made
+  std::shared_ptr<Companion> companion;  ///< the same
 
   void bind(const std::string& source) override { trace = source; }
   [[nodiscard]] std::shared_ptr<Companion> make(Inputs& inputs, std::uint64_t seed) override;

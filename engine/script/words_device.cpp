@@ -35,8 +35,10 @@ void read_base(lua_State* L, Fields& fields, DeviceNode& node, const char* word)
   const RobotPointer robot = get<RobotPointer>(L, lua_gettop(L), fields.name_of("base"));
   lua_pop(L, 1);
   if (!node.inner) {
-    ScriptState::of(L).notice(fmt::format("{}: {}: base changes nothing without an operator: what is bound was "
-                                          "recorded at the device itself", where(L), word));
+    ScriptState::of(L).notice(
+        fmt::format("{}: {}: base changes nothing without an operator: what is bound was "
+                    "recorded at the device itself",
+                    where(L), word));
     return;
   }
   node.inner->make = [make = node.inner->make, robot, &inputs = ScriptState::of(L).inputs](const DeviceMaking& making) {

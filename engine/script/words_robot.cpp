@@ -82,8 +82,7 @@ void read_tracker(lua_State* L, Fields& fields, RobotNode& node) {
     settings.sigma_yaw = tracker.not_negative("angularNoise", settings.sigma_yaw);
     settings.dropout_rate = tracker.not_negative("dropouts", settings.dropout_rate);
     settings.dropout_mean = tracker.positive("dropout").value_or(settings.dropout_mean);
-    if (!tracker.boolean("predict").value_or(true))
-      node.settings.estimate = {.alpha = 1, .horizon = 0, .smoothing = 0};
+    if (!tracker.boolean("predict").value_or(true)) node.settings.estimate = {.alpha = 1, .horizon = 0, .smoothing = 0};
     tracker.finish(false);
   }
   lua_pop(L, 1);
@@ -101,7 +100,8 @@ void read_walls(lua_State* L, Fields& fields, RobotNode& node) {
   if (!fields.push("walls")) return;
   Fields walls(L, lua_gettop(L), fields.name_of("walls"));
   const auto min = walls.vector("min"), max = walls.vector("max");
-  if (!min || !max) raise(L, "{} needs min and max: {{ min = {{x, y, z}}, max = {{x, y, z}} }}", fields.name_of("walls"));
+  if (!min || !max)
+    raise(L, "{} needs min and max: {{ min = {{x, y, z}}, max = {{x, y, z}} }}", fields.name_of("walls"));
   robot::WallSettings room;
   room.corners = robot::rectangle(min->x(), max->x(), -max->z(), -min->z());
   room.radius = walls.positive("radius").value_or(room.radius);
@@ -204,6 +204,13 @@ int set_power(lua_State* L) {
   return 0;
 }
 
+int set_supply(lua_State* L) {
+  const double volts = number_at(L, 2, "setSupply: the voltage");
+  if (volts < 0) raise(L, "setSupply: {:g} V must not be negative", volts);
+  running(L, *get<RobotPointer>(L, 1, "setSupply: the robot"), "setSupply").plant().set_supply_voltage(volts);
+  return 0;
+}
+
 int hide_base(lua_State* L) {
   const bool is_hidden = boolean_at(L, 2, "hideBase");
   running(L, *get<RobotPointer>(L, 1, "hideBase: the robot"), "hideBase").tracker().hide(is_hidden);
@@ -211,7 +218,9 @@ int hide_base(lua_State* L) {
 }
 
 int swap_axes(lua_State* L) {
-  running(L, *get<RobotPointer>(L, 1, "swapAxes: the robot"), "swapAxes").tracker().swap_axes(boolean_at(L, 2, "swapAxes"));
+  running(L, *get<RobotPointer>(L, 1, "swapAxes: the robot"), "swapAxes")
+      .tracker()
+      .swap_axes(boolean_at(L, 2, "swapAxes"));
   return 0;
 }
 
@@ -243,11 +252,12 @@ struct NamedMethod {
   void (*push)(lua_State*);
 };
 constexpr std::array kMethods = {
-    NamedMethod{"killServer", push_method<kill_server>},   NamedMethod{"startServer", push_method<start_server>},
-    NamedMethod{"setGain", push_method<set_gain>},         NamedMethod{"unplug", push_method<unplug>},
-    NamedMethod{"resetBoard", push_method<reset_board>},   NamedMethod{"setPower", push_method<set_power>},
-    NamedMethod{"hideBase", push_method<hide_base>},       NamedMethod{"swapAxes", push_method<swap_axes>},
-    NamedMethod{"blockWheel", push_method<block_wheel>},   NamedMethod{"breakEncoder", push_method<break_encoder>},
+    NamedMethod{"killServer", push_method<kill_server>},     NamedMethod{"startServer", push_method<start_server>},
+    NamedMethod{"setGain", push_method<set_gain>},           NamedMethod{"unplug", push_method<unplug>},
+    NamedMethod{"resetBoard", push_method<reset_board>},     NamedMethod{"setPower", push_method<set_power>},
+    NamedMethod{"setSupply", push_method<set_supply>},       NamedMethod{"hideBase", push_method<hide_base>},
+    NamedMethod{"swapAxes", push_method<swap_axes>},         NamedMethod{"blockWheel", push_method<block_wheel>},
+    NamedMethod{"breakEncoder", push_method<break_encoder>},
 };
 
 int robot_member(lua_State* L) {
@@ -308,8 +318,8 @@ int remote_base(lua_State* L) {
     const std::string server = description.server.substr(0, description.server.find('@'));
     const RobotPointer robot = robot_served_by(state, server);
     if (robot) return make_remote_base(making.inner, robot->base_of(state.inputs, making.seed), description);
-    state.notice(fmt::format("{}: no Robot of this scene has the server '{}'; the base of '{}' stays where it is", kRemoteBase,
-                             server, making.name));
+    state.notice(fmt::format("{}: no Robot of this scene has the server '{}'; the base of '{}' stays where it is",
+                             kRemoteBase, server, making.name));
     return making.inner;
   };
   push(L, node);

@@ -1,5 +1,5 @@
-// A device on a base that moves: what the hand in the room does comes back to the room, whatever the base does; what the
-// hand feels, the base feels the other way round; and the error drives.
+// A device on a base that moves: what the hand in the room does comes back to the room, whatever the base does; what
+// the hand feels, the base feels the other way round; and the error drives.
 #include "engine/device/mobile_base.hpp"
 
 #include <gtest/gtest.h>

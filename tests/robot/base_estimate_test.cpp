@@ -53,7 +53,8 @@ TEST(BaseEstimate, IsNearABaseThatTurnsBackAndNeverJumps) {
     if (std::isfinite(before)) jump = std::max(jump, std::abs(place[0] - before));
     before = place[0];
   });
-  EXPECT_LT(worst, 0.007);  // a T^2 (1 - alpha) / beta + (a T (alpha / beta - 1 / 2)) 37 ms + a (37 ms)^2 / 2 is 4.5; noise and smoothing
+  EXPECT_LT(worst, 0.007);  // a T^2 (1 - alpha) / beta + (a T (alpha / beta - 1 / 2)) 37 ms + a (37 ms)^2 / 2 is 4.5;
+                            // noise and smoothing
   EXPECT_LT(jump, 0.0015);  // 1 ms at 0.94 m/s, and the correction of a report spread over 20
 }
 
@@ -70,7 +71,8 @@ TEST(BaseEstimate, TakesReportsAsTheyAreIfItIsTold) {
 // A tracker that is gone: on for the horizon, then it stands.
 TEST(BaseEstimate, StandsStillWithoutReports) {
   BaseEstimate estimate({0, 0, 0}, {});
-  follow(estimate, [](double t) { return t; }, 0, [](double, const BaseEstimate::Place&) {});
+  follow(
+      estimate, [](double t) { return t; }, 0, [](double, const BaseEstimate::Place&) {});
   const double last = std::floor((4 - kLatency) * kRate + 1e-9) / kRate;
   for (int ms = 4001; ms < 7000; ++ms) estimate.advance(ms * kStep);
   EXPECT_NEAR(estimate.place()[0], last + EstimateParameters{}.horizon, 1e-6);

@@ -16,7 +16,8 @@ void advance_companions(World& world, Notes& notes) {
     reports.clear();
     world.companions[i]->report(reports);
     for (const PartNotes::Note& report : reports)
-      notes.add({.time = world.time(), .kind = report.kind, .text = text_of_companion, .first = i, .detail = report.text});
+      notes.add(
+          {.time = world.time(), .kind = report.kind, .text = text_of_companion, .first = i, .detail = report.text});
   }
 }
 
