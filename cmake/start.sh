@@ -20,23 +20,26 @@ logged() {
   fi
 }
 
-# Names in packages.txt that Debian's package manager does not have installed, one a line.
+# Names in packages.txt that Debian's package manager does not have installed, one a line. $1: needed, or optional (what
+# stands below that heading).
 missing_packages() {
   local wanted
-  wanted=$(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' -e 's/[[:space:]]//g' packages.txt)
+  wanted=$(awk -v part="$1" '/^# optional$/ { is_optional = 1 } (part == "optional") == (is_optional == 1)' packages.txt |
+    sed -e 's/#.*//' -e '/^[[:space:]]*$/d' -e 's/[[:space:]]//g')
   # dpkg-query fails for a name it has never heard of; that name is missing like any other.
   comm -23 <(sort -u <<<"$wanted") \
     <(xargs dpkg-query -W -f '${db:Status-Status} ${Package}\n' <<<"$wanted" 2>/dev/null | sed -n 's/^installed //p' | sort -u)
 }
 
 # Installs the missing packages; asks for nothing and calls neither sudo nor apt-get when all are there.
+# $1: which, as above; those needed if it is not said
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
     echo "note: this is not a Debian system; the tools and libraries in packages.txt are taken as installed" >&2
     return
   fi
   local missing as_root=()
-  missing=$(missing_packages | xargs)
+  missing=$(missing_packages "${1:-needed}" | xargs)
   [ -n "$missing" ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null ||
@@ -50,6 +53,19 @@ install_packages() {
   logged build/log/apt-update.log "apt-get update" "${apt[@]}" update
   # shellcheck disable=SC2086  # one word per package is meant
   logged build/log/apt-install.log "installing packages" "${apt[@]}" install -y --no-install-recommends $missing
+}
+
+# The same with the optional ones; a failure is a note. A build that is configured looks for them again.
+install_optional_packages() {
+  local missing
+  command -v dpkg-query >/dev/null || return 0
+  missing=$(missing_packages optional | xargs)
+  [ -n "$missing" ] || return 0
+  if (install_packages optional); then
+    rm -f build*/build.ninja
+  else
+    echo "note: not installed: $missing; what needs them is left out, and its tests say so" >&2
+  fi
 }
 
 # Compilers at once: one per core, but 1.5 GB of memory for each.

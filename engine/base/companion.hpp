@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/columns.hpp"
+#include "engine/base/part_notes.hpp"
 
 namespace verisim {
 
@@ -23,6 +24,9 @@ class Companion {
   [[nodiscard]] virtual double duration() const = 0;
   /// Adds what is recorded of it. Called once, before the first frame; the getters live as long as the companion.
   virtual void declare(Columns& columns) const = 0;
+  /// Says what began or ended in the last frame; each text goes on behind its kind: "tracker", "has lost the base". No
+  /// allocation.
+  virtual void report(PartNotes& /*notes*/) {}
 };
 
 }  // namespace verisim

@@ -13,6 +13,7 @@ void add_recover(CLI::App& app, int& exit_code);
 void add_inspect(CLI::App& app, int& exit_code);
 void add_trace(CLI::App& app, int& exit_code);
 void add_wii(CLI::App& app, int& exit_code);
+void add_robot(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 void add_tradeoff(CLI::App& app, int& exit_code);

@@ -42,6 +42,7 @@ int run_command(int argc, char** argv) {
   verisim::cli::add_inspect(app, exit_code);
   verisim::cli::add_trace(app, exit_code);
   verisim::cli::add_wii(app, exit_code);
+  verisim::cli::add_robot(app, exit_code);
   verisim::cli::add_compare(app, exit_code);
   verisim::cli::add_stability(app, exit_code);
   verisim::cli::add_tradeoff(app, exit_code);

@@ -12,6 +12,7 @@
 #include "engine/record/output_place.hpp"
 #include "engine/record/synth.hpp"
 #include "engine/record/trace.hpp"
+#include "engine/robot/drive.hpp"
 #include "engine/session/json_text.hpp"
 #include "engine/simulation/inputs.hpp"
 
@@ -133,21 +134,47 @@ void add_convert(CLI::App& trace, int& exit_code) {
   });
 }
 
+/// The drive of a mecanum base as a trace: counts, commands and true poses.
+Trace encoder_trace(const std::string& path, const std::map<std::string, double>& parameters) {
+  const robot::DriveTrace drive = robot::synthesize_drive(path, parameters);
+  Trace trace;
+  trace.kind = "encoder";
+  trace.rate_hz = drive.rate_hz;
+  trace.source = "verisim trace synth encoder --path " + drive.description;
+  trace.columns = {"t", "e0", "e1", "e2", "e3", "vx", "vy", "omega", "x", "y", "theta"};
+  trace.values.reserve(drive.samples.size() * trace.columns.size());
+  for (const auto& [t, counts, command, pose] : drive.samples) {
+    trace.values.push_back(t);
+    for (const std::int64_t count : counts) trace.values.push_back(static_cast<double>(count));
+    trace.values.insert(trace.values.end(), {command.vx, command.vy, command.omega, pose.x, pose.y, pose.theta});
+  }
+  return trace;
+}
+
 void add_synth(CLI::App& trace, int& exit_code) {
   struct Options {
     std::string kind;
+    std::string path;
     OutOptions out;
     std::vector<std::string> sets;
     std::uint64_t seed = 1;
   };
   auto* command = trace.add_subcommand("synth", "Makes a trace from a formula");
   auto o = std::make_shared<Options>();
-  command->add_option("KIND", o->kind, "What to make: " + synthesizer_help())->required();
+  command
+      ->add_option("KIND", o->kind,
+                   "What to make: " + synthesizer_help() +
+                       "\nencoder, of a mecanum base that drives along --path without slip:" + robot::drive_help())
+      ->required();
   add_out_options(*command, o->out, "Trace to write, .csv or .h5; only a trace is replaced")->required();
   command->add_option("--set", o->sets, "KEY=NUMBER: a parameter of the kind")->take_all();
+  command->add_option("--path", o->path,
+                      fmt::format("Of encoder: {} (default: straight)", fmt::join(robot::drive_paths(), ", ")));
   add_seed_option(
       *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of its random streams (0 to 2^64 - 1)");
-  command->footer("Example: verisim trace synth insertion -o insert.csv --set depth=0.3");
+  command->footer(
+      "Examples: verisim trace synth insertion -o insert.csv --set depth=0.3\n"
+      "          verisim trace synth encoder --path square -o square.csv --set length=2");
   command->callback([=, &exit_code] {
     std::map<std::string, double> parameters;
     for (const auto& [key, value] : split_pairs("--set", o->sets)) {
@@ -156,8 +183,19 @@ void add_synth(CLI::App& trace, int& exit_code) {
       if (end == value.c_str() || *end != '\0')
         fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
     }
+    std::vector<std::string> kinds = synthesizers();
+    kinds.emplace_back("encoder");
+    if (std::find(kinds.begin(), kinds.end(), o->kind) == kinds.end()) {
+      const std::string near = nearest_name(o->kind, kinds);
+      fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o->kind,
+           near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
+    }
+    const bool is_drive = o->kind == "encoder";
+    if (!is_drive && !o->path.empty())
+      fail(ErrorKind::usage, "--path {}: '{}' has none; only encoder has", o->path, o->kind);
     const std::string out = check_output({o->out.path, OutputKind::trace, o->out.force, {}});
-    write_trace(out, synthesize(o->kind, parameters, o->seed));
+    write_trace(out, is_drive ? encoder_trace(o->path.empty() ? "straight" : o->path, parameters)
+                              : synthesize(o->kind, parameters, o->seed));
     exit_code = 0;
   });
 }

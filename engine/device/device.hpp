@@ -6,7 +6,6 @@
 // it. What a device may know of the frame comes with the call (DeviceFrame); it asks nobody else.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -15,6 +14,7 @@
 
 #include "engine/base/columns.hpp"
 #include "engine/base/contract.hpp"
+#include "engine/base/part_notes.hpp"
 #include "engine/base/pose.hpp"
 
 namespace verisim {
@@ -74,27 +74,8 @@ struct Practice {
   double edge = std::numeric_limits<double>::infinity();
 };
 
-/// What began or ended in a frame. Texts are literals.
-class DeviceNotes {
- public:
-  static constexpr std::size_t kMax = 32;
-  struct Note {
-    const char* kind;
-    const char* text;  ///< behind the device's name
-  };
-  /// No allocation. @pre there are fewer than kMax in this frame: two of each part of a chain
-  void add(const char* kind, const char* text) {
-    VERISIM_ASSERT(count_ < kMax);
-    notes_[count_++] = {kind, text};
-  }
-  [[nodiscard]] const Note* begin() const { return notes_.data(); }
-  [[nodiscard]] const Note* end() const { return notes_.data() + count_; }
-  void clear() { count_ = 0; }
-
- private:
-  std::array<Note, kMax> notes_{};
-  std::size_t count_ = 0;
-};
+/// What began or ended in a frame.
+using DeviceNotes = PartNotes;
 
 class Device {
  public:

@@ -13,8 +13,10 @@ std::span<const Reproduction> reproductions() {
       Reproduction{"R5", "blending and association", &r5_blending},
       Reproduction{"R6", "the bubble's laws (figure 4.6)", &r6_bubble_laws},
       Reproduction{"R7", "trackable area and volume", &r7_coverage},
+      Reproduction{"R8", "the robot's interrupts and top speed", &r8_firmware},
       Reproduction{"R9", "parts whose constraints conflict", &r9_conflicts},
       Reproduction{"R10", "stickiness of the bubble's laws", &r10_stickiness},
+      Reproduction{"R11", "transparency of the mobile base", &r11_transparency},
   };
   return kAll;
 }

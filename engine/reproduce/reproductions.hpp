@@ -26,8 +26,10 @@ struct Reproduction {
 [[nodiscard]] std::vector<Row> r5_blending(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r6_bubble_laws(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r7_coverage(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r8_firmware(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r9_conflicts(const Workshop& workshop);
 [[nodiscard]] std::vector<Row> r10_stickiness(const Workshop& workshop);
+[[nodiscard]] std::vector<Row> r11_transparency(const Workshop& workshop);
 
 /// The rows as a table for a terminal: figures aligned, the reason below each.
 [[nodiscard]] std::string table_of(const std::vector<Row>& rows);

@@ -33,6 +33,7 @@ struct DeviceNode {
   bool drivable = false;              ///< hardware: a source may be its inner node, by operator= or by --bind
   std::shared_ptr<DeviceNode> inner;  ///< filters: what they wrap; hardware: what drives it, or null
   std::shared_ptr<DeviceNode> base;   ///< of a filter that needs a second device: a tracker of the base
+  std::shared_ptr<double> gain;       ///< filters that have one a script may set (`.gain`); null: it has none
   const char* records = nullptr;      ///< filters: what of theirs is recorded, and so may be in a chain once
   DeviceFactory make;
   std::shared_ptr<Device> device;     ///< null until make_device

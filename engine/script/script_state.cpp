@@ -38,6 +38,7 @@ ScriptState::ScriptState(const ScenarioOptions& scenario_options, Inputs& scenar
   add_device_words(L);
   add_filter_words(L);
   add_wii_words(L);
+  add_robot_words(L);
   add_simulation_words(L);
   add_action_words(L);
   add_file_words(L);

@@ -166,6 +166,7 @@ void add_device_words(lua_State* L);      ///< Devices, addDevice, grasp
 void add_hand_word(lua_State* L);         ///< Devices.Hand, into the table at the top of the stack
 void add_filter_words(lua_State* L);      ///< what wraps devices: placement, bubble, navigation
 void add_wii_words(lua_State* L);         ///< WiiHead
+void add_robot_words(lua_State* L);       ///< Robot, VRPNRemoteBase
 void add_simulation_words(lua_State* L);  ///< simulation, CollisionCounter
 void add_action_words(lua_State* L);      ///< Actions, runbuf
 void add_file_words(lua_State* L);        ///< require, dofile, runfile, vrjLua

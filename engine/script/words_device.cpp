@@ -1,7 +1,9 @@
 // Devices and grasps.
 #include "engine/device/hardware.hpp"
+#include "engine/device/mobile_base.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/script/device_node.hpp"
+#include "engine/script/robot_node.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 
@@ -27,6 +29,23 @@ void read_hardware(Fields& fields, HardwareDescription& d) {
   d.load.friction = fields.not_negative("friction", d.load.friction);
 }
 
+/// base = robot: who drives the device by operator= walks in the room. What --bind brings was recorded at the device.
+void read_base(lua_State* L, Fields& fields, DeviceNode& node, const char* word) {
+  if (!fields.push("base")) return;
+  const RobotPointer robot = get<RobotPointer>(L, lua_gettop(L), fields.name_of("base"));
+  lua_pop(L, 1);
+  if (!node.inner) {
+    ScriptState::of(L).notice(
+        fmt::format("{}: {}: base changes nothing without an operator: what is bound was "
+                    "recorded at the device itself",
+                    where(L), word));
+    return;
+  }
+  node.inner->make = [make = node.inner->make, robot, &inputs = ScriptState::of(L).inputs](const DeviceMaking& making) {
+    return make_mounted(make(making), robot->base_of(inputs, making.seed));
+  };
+}
+
 int hardware(lua_State* L, const char* word, HardwareDescription description, double scale,
              std::initializer_list<const char*> without_effect) {
   check_building(L, word);
@@ -41,6 +60,7 @@ int hardware(lua_State* L, const char* word, HardwareDescription description, do
       raise(L, "{}: operator must be a source of motion, such as Devices.Hand or Devices.Replay", word);
     lua_pop(L, 1);
   }
+  read_base(L, fields, *node, word);
   for (const char* name : without_effect)
     if (fields.accepted(name))
       ScriptState::of(L).notice(fmt::format("{}: {}: {} is accepted and changes nothing", where(L), word, name));
@@ -227,6 +247,8 @@ int device_member(lua_State* L) {
     push(L, Vector3d(rendered.force));
   else if (name == "torques")
     push(L, Vector3d(rendered.torque));
+  else if (name == "gain" && node->gain)
+    lua_pushnumber(L, *node->gain);
   else if (name == "getButtonState")
     push_function<button_state, Charge::call>(L);
   else if (name == "recorded")
@@ -236,6 +258,15 @@ int device_member(lua_State* L) {
           suggestion(name, {"name", "handle", "pose", "raw", "position", "orientation", "matrix", "forces", "torques",
                             "getButtonState", "recorded"}));
   return 1;
+}
+
+/// Of what drives a base, the gain; of all else nothing.
+int set_device_member(lua_State* L) {
+  const DevicePointer node = device_at(L, 1, "a device");
+  const std::string name = text_at(L, 2, "a device's member");
+  if (!node->gain || name != "gain") return refuse_assignment(L);
+  *node->gain = number_at(L, 3, "a device's gain");
+  return 0;
 }
 
 /// While it runs, its whole chain.
@@ -251,7 +282,7 @@ int device_text(lua_State* L) {
 void add_device_words(lua_State* L) {
   push_metatable<DevicePointer>(L);
   set_function<device_member, Charge::call>(L, "__index");
-  set_function<refuse_assignment, Charge::call>(L, "__newindex");
+  set_function<set_device_member, Charge::call>(L, "__newindex");
   set_function<device_text, Charge::call>(L, "__tostring");
   lua_pop(L, 1);
   lua_newtable(L);

@@ -4,9 +4,11 @@
 #include "engine/device/bump.hpp"
 #include "engine/device/filters.hpp"
 #include "engine/device/hardware.hpp"
+#include "engine/device/mobile_base.hpp"
 #include "engine/device/passivity_filter.hpp"
 #include "engine/device/tracked_transform.hpp"
 #include "engine/script/device_node.hpp"
+#include "engine/script/robot_node.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 
@@ -102,7 +104,9 @@ int tracked_transform(lua_State* L) {
   base->default_name = "tracker";
   base->place = where(L);
   base->drivable = true;
-  base->make = [tracker](const DeviceMaking& making) {
+  base->make = [tracker, &state = ScriptState::of(L)](const DeviceMaking& making) {
+    if (const auto robot = making.inner ? nullptr : base_tracked_by(state, making.name, making.seed))
+      return make_base_tracker(making.name, robot);
     HardwareDescription named = tracker;
     named.name = making.name;
     return make_hardware(std::move(named), making.inner);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/simulation/implementation.hpp"
+#include "engine/simulation/stages/companions.hpp"
 #include "engine/simulation/stages/rendering.hpp"
 
 namespace verisim {
@@ -64,7 +65,7 @@ void Simulation::step() {
   render(world, s.contacts, s.exact, s.response, s.motion, notes);
   timer.done(Stage::render);
   ++world.frame;
-  for (const auto& companion : world.companions) companion->advance(world.time());
+  advance_companions(world, notes);
   world.clocks.run_due(world.frame, world.time());  // scripts: same thread, fixed order
   world.list_moving();                              // which may have taken and let go
   timer.done(Stage::clocks);

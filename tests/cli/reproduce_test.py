@@ -14,7 +14,7 @@ import h5py
 from program import ProgramTest, VERISIM
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-IDS = ["R1", "R2", "R3", "R4", "R5", "R6", "R7", "R9", "R10"]
+IDS = ["R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "R10", "R11"]
 
 
 def processor_seconds():

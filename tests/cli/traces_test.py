@@ -53,6 +53,21 @@ grasp(omni, box)""")
         self.assertGreater(summary["frames"], 500)
         self.succeed("replay", run_file, "--verify")
 
+    def test_synthesized_drives_of_the_robot_are_encoder_traces(self):
+        for path, end in {"straight": (1, 0, 0), "strafe": (0, 1, 0), "turn": (0, 0, 6.2831853),
+                          "square": (0, 0, 6.2831853), "circle": (0, 0, 6.2831853)}.items():
+            out = self.path(path + ".csv")
+            self.succeed("trace", "synth", "encoder", "--path", path, "-o", out, "--set", "rate=50")
+            report = self.run_json("trace", "info", out)
+            self.assertEqual((report["kind"], report["rate_hz"]), ("encoder", 50))
+            with open(out) as f:
+                rows = f.read().splitlines()
+            self.assertEqual(rows[4], "t,e0,e1,e2,e3,vx,vy,omega,x,y,theta")
+            for value, expected in zip(rows[-1].split(",")[-3:], end):
+                self.assertAlmostEqual(float(value), expected, places=7)
+        self.refuse(2, "did you mean 'square'", "trace", "synth", "encoder", "--path", "sqare", "-o", self.path("no.csv"))
+        self.refuse(2, "only encoder has", "trace", "synth", "sine", "--path", "square", "-o", self.path("no.csv"))
+
     def test_a_device_that_nothing_drives_stays_and_says_so(self):
         self.write("s.lua", 'defineSimulationParameters{duration = 0.1}\n'
                    'addDevice(Devices.Sensable.PhantomOmni{ name = "omni" })')

@@ -29,9 +29,9 @@ MAY_INCLUDE = {
     "vrpn": "base",
     "record": "base",
     "batch": "base record",
-    "reproduce": "base geometry record voxel constraint wii device",
+    "reproduce": "base geometry record voxel constraint wii device robot",
     "compare": "base record",
-    "simulation": "base geometry voxel contact constraint exact dynamics device robot record",
+    "simulation": "base geometry voxel contact constraint exact dynamics device record",
     "stability": "base geometry device simulation",
     "tradeoff": "base",
     "script": "base geometry device robot wii record simulation tradeoff",
@@ -39,6 +39,16 @@ MAY_INCLUDE = {
     "api": "base record session",
     "python": "api",
 }
+
+# The robot's firmware stands beside engine and knows nothing of it. What of it who may include: path prefixes of includers.
+# What runs on the controller has no standard library: firmware, protocol, and what the compiler for it brings.
+MAY_INCLUDE_FIRMWARE = {
+    "firmware_sim/protocol/": ["firmware_sim/", "engine/robot/", "engine/cli/", "tests/"],
+    "firmware_sim/board.hpp": ["firmware_sim/host/", "firmware_sim/avr/", "engine/robot/", "engine/cli/", "tests/"],
+    "firmware_sim/firmware/": ["firmware_sim/firmware/", "firmware_sim/host/", "firmware_sim/avr/", "tests/firmware_sim/"],
+    "firmware_sim/avr/": ["firmware_sim/avr/"],
+}
+ON_THE_CONTROLLER = ["firmware_sim/firmware/", "firmware_sim/protocol/", "firmware_sim/avr/main.cpp"]
 
 # Each library has one home (path prefixes), so that a change of library is a change of one folder. A header that no
 # row knows is a finding: a new library gets its row first.
@@ -61,22 +71,27 @@ HOME_OF_LIBRARY = {
     r"sleef\.h|xxhash\.h|openssl/sha\.h": ["engine/base/"],
     # The operating system's. Sockets: a network is vrpn's alone; the CAD child process is spoken to through a pair.
     r"(netinet/(in|tcp)|arpa/inet|netdb)\.h": ["engine/vrpn/socket.cpp"],
-    r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp"],
-    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp", "engine/batch/"],
+    r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp", "firmware_sim/avr/avr_board.cpp"],
+    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp", "engine/batch/",
+                  "firmware_sim/avr/avr_board.cpp"],
     r"(unistd|fcntl|sys/(stat|mman|resource))\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp",
                                                     "engine/geometry/cad/", "engine/record/", "engine/cli/", "engine/session/",
                                                     "engine/base/user_file.cpp", "engine/base/standard_streams.cpp",
-                                                    "engine/batch/workers.cpp"],
+                                                    "engine/batch/workers.cpp", "firmware_sim/avr/"],
     r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/", "engine/batch/workers.cpp",
-                                     "engine/cli/program_runs.cpp"],
+                                     "engine/cli/program_runs.cpp", "firmware_sim/avr/avr_board.cpp"],
     r"link\.h": ["engine/base/own_file.cpp"],
     r"pybind11/\w+\.h": ["engine/python/"],
     r"verisim/\w+\.hpp": ["engine/api/", "engine/python/"],
+    r"(sim_avr|sim_elf|avr_(uart|ioport|extint))\.h": ["firmware_sim/avr/chip.cpp"],
+    r"avr/\w+\.h": ["firmware_sim/avr/main.cpp"],
+    r"stdint\.h": ["firmware_sim/"],
     r"(pthread|sched|sys/utsname|elf)\.h": ["engine/cli/", "engine/session/", "engine/batch/workers.cpp"],
 }
 
 # What a folder's CMakeLists.txt may link besides the project's own: the libraries above, by the names CMake knows.
 HOME_OF_LINKED = {
+    "verisim_protocol": ["engine/robot"], "verisim_firmware_host": ["engine/robot"],
     "verisim_flags": EVERYWHERE, "verisim_small_arrays": ["engine/exact"], "Threads::Threads": EVERYWHERE,
     "Eigen3::Eigen": ["engine/base"], "fmt::fmt": ["engine/base"], "sleef": ["engine/base"],
     "OpenSSL::Crypto": ["engine/base"], "CGAL::CGAL": ["engine/geometry"],
@@ -133,8 +148,13 @@ MAY_OPEN_FILES = {
 
 KEPT_FOR_TESTS = {  # functions of the engine's headers that nothing in the engine calls
     "gap_at_end": "what the normal forces of a convex step belong to",
+    "coil_energy": "of the robot's energy balance",
+    "electrical_book": "of the robot's energy balance",
     "is_declared": "the charge of a function of scripts",
+    "kappa": "speed that walls allow per room",
+    "mechanics": "of the robot's energy balance",
     "radius_near": "of a recovered surface",
+    "stored_energy": "of the robot's energy balance",
 }
 
 LINES_OF_A_FILE = 500
@@ -187,6 +207,23 @@ def against_the_dependency_rule(files):
     return findings
 
 
+def against_the_firmware_rule(files):
+    findings = []
+    for path, text in files.items():
+        for include in includes(text):
+            header = header_in(include)
+            if header.startswith("firmware_sim/"):
+                homes = [home for known, where in MAY_INCLUDE_FIRMWARE.items() if header.startswith(known) for home in where]
+                is_allowed = is_at(path, homes)
+            else:
+                is_allowed = not path.startswith("firmware_sim/") or not header.startswith(("engine/", "tests/", "bench/"))
+            if is_at(path, ON_THE_CONTROLLER) and not re.match(r"firmware_sim/(firmware|protocol)/|stdint\.h$|avr/", header):
+                is_allowed = False
+            if not is_allowed:
+                findings.append(f"{path} includes {include}")
+    return findings
+
+
 def permissions_nobody_uses(files):
     used = {(folder_of(p), folder_of(header_in(i)))
             for p, text in files.items() for i in includes(text) if header_in(i).startswith("engine/")}
@@ -202,7 +239,7 @@ def oddly_spelled_includes(files):
     for path, text in files.items():
         for include in includes(text):
             header = header_in(include)
-            is_ours = header.split("/")[0] in ("engine", "tests", "bench", "scenarios")
+            is_ours = header.split("/")[0] in ("engine", "tests", "bench", "scenarios", "firmware_sim")
             if not include.startswith(('"', "<")):
                 findings.append(f"{path} includes what a macro says: {include}")
             elif posixpath.normpath(header) != header or header.startswith(("/", "..")):
@@ -211,7 +248,7 @@ def oddly_spelled_includes(files):
                 findings.append(f"{path} writes the project's own with brackets: {include}")
             elif include.startswith('"') and not is_ours and not header.startswith("hwy/"):
                 findings.append(f"{path} leaves out the folder: {include}")
-            elif is_ours and path.startswith("engine/") and not header.startswith("engine/"):
+            elif is_ours and path.startswith("engine/") and not header.startswith(("engine/", "firmware_sim/")):
                 findings.append(f"{path} includes what is not the engine's: {include}")
         for own in re.findall(r'^[ \t]*#\s*define\b.*"([^"\n]*\.[ch]pp)"', without_comments(text), re.MULTILINE):
             if own != path:
@@ -225,7 +262,7 @@ def libraries_away_from_home(files):
         for header in map(header_in, includes(text)):
             known = [where for pattern, where in HOME_OF_LIBRARY.items() if re.fullmatch(pattern, header)]
             homes = [home for where in known for home in where]
-            if not header.startswith("engine/") and not is_at(path, homes):
+            if not header.startswith(("engine/", "firmware_sim/")) and not is_at(path, homes):
                 findings.append(f"{path} includes {header}; its home is {' or '.join(homes) or 'unknown'}")
     return findings
 

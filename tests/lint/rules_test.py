@@ -11,7 +11,8 @@ import rules
 from source_text import ROOT, comments_of, functions, includes, sources
 
 ENGINE = sources("engine")
-ALL = sources("engine", "tests", "bench", "scenarios")
+FIRMWARE = sources("firmware_sim")
+ALL = sources("engine", "firmware_sim", "tests", "bench", "scenarios")
 IN_STATE = "engine/device/a.cpp"
 
 
@@ -44,6 +45,25 @@ class Rules(unittest.TestCase):
             ("engine/cli/a.cpp", '#include "engine/voxel/voxmap.hpp"\n'),
         ])
 
+    def test_the_firmware_stands_apart(self):
+        self.holds(rules.against_the_firmware_rule, ALL, planted=[
+            ("firmware_sim/host/a.cpp", '#include "engine/base/error.hpp"\n'),
+            ("firmware_sim/protocol/a.hpp", "#include <cstdint>\n"),
+            ("firmware_sim/firmware/a.cpp", "#include <math.h>\n"),
+            ("firmware_sim/firmware/a.cpp", '#include "firmware_sim/board.hpp"\n'),
+            ("firmware_sim/protocol/a.hpp", '#include "firmware_sim/firmware/pid.hpp"\n'),
+            ("firmware_sim/avr/main.cpp", "#include <vector>\n"),
+            ("engine/robot/a.cpp", '#include "firmware_sim/firmware/pid.hpp"\n'),
+            ("engine/robot/a.cpp", '#include "firmware_sim/avr/wire.hpp"\n'),
+            ("engine/device/a.cpp", '#include "firmware_sim/board.hpp"\n'),
+            ("engine/device/a.cpp", '#include "firmware_sim/protocol/frame.hpp"\n'),
+        ], harmless=[
+            ("engine/robot/a.cpp", '#include "firmware_sim/board.hpp"\n#include "firmware_sim/protocol/frame.hpp"\n'),
+            ("engine/cli/a.cpp", '#include "firmware_sim/protocol/frame.hpp"\n'),
+            ("firmware_sim/host/a.cpp", '#include <vector>\n#include "firmware_sim/firmware/firmware.hpp"\n'),
+            ("firmware_sim/avr/main.cpp", "#include <avr/io.h>\n#include <stdint.h>\n"),
+        ])
+
     def test_the_dependency_rule_allows_no_more_than_is_used(self):
         self.assertEqual(rules.permissions_nobody_uses(ENGINE), [])
         there = {"engine/base/a.hpp": '#include "engine/base/b.hpp"\n',
@@ -71,7 +91,7 @@ class Rules(unittest.TestCase):
         ])
 
     def test_a_library_is_included_only_at_its_home(self):
-        self.holds(rules.libraries_away_from_home, ENGINE, planted=[
+        self.holds(rules.libraries_away_from_home, {**ENGINE, **FIRMWARE}, planted=[
             ("engine/simulation/a.cpp", f"#include <{header}>\n")
             for header in ("hdf5.h", "H5Cpp.h", "hdf5/serial/hdf5.h", "highfive/H5File.hpp", "lua.hpp", "lua.h",
                            "lua5.1/lua.hpp",
@@ -109,7 +129,7 @@ class Rules(unittest.TestCase):
                 self.assertNotEqual(rules.links_against_the_dependency_rule({**lists, path: lists[path] + line}), [])
 
     def test_the_wall_clock_is_read_in_few_places(self):
-        self.holds(rules.clocks, ENGINE, planted=[
+        self.holds(rules.clocks, {**ENGINE, **FIRMWARE}, planted=[
             "auto t = std::chrono::steady_clock::now();\n",
             "using Clock = std::chrono::steady_clock;\n",
             "namespace c = std::chrono;\n",
