@@ -2,8 +2,10 @@
 // push the same pin through the same hole and are asked for contacts at the same recorded poses, each under every
 // setting of a grid over its own dials, and of each the best is told. `verisim tradeoff --peers` runs this.
 #include <fmt/format.h>
+#include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -155,6 +157,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quick", options.quick, "Two of the six insertions, two settings of every grid");
   app.add_flag("--quiet", options.quiet, "No progress");
   CLI11_PARSE(app, argc, argv);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // who asked is gone: nobody waits for the answer
   try {
     return verisim::peers::run(options);
   } catch (const verisim::Error& error) {

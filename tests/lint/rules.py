@@ -68,7 +68,7 @@ HOME_OF_LIBRARY = {
                                                     "engine/base/user_file.cpp", "engine/base/standard_streams.cpp",
                                                     "engine/batch/workers.cpp"],
     r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/", "engine/batch/workers.cpp",
-                                     "engine/cli/program_runs.cpp"],
+                                     "engine/cli/program_runs.cpp", "engine/cli/tradeoff_peers.cpp"],
     r"link\.h": ["engine/base/own_file.cpp"],
     r"pybind11/\w+\.h": ["engine/python/"],
     r"verisim/\w+\.hpp": ["engine/api/", "engine/python/"],
