@@ -78,7 +78,7 @@ class Bullet final : public Pusher {
 
 }  // namespace
 
-Engine bullet() {
+Engine peer_bullet() {
   const int version = btGetVersion();  // 324: 3.24
   Engine engine{.name = "Bullet",
                 .version = fmt::format("{}.{}", version / 100, version % 100),
@@ -95,10 +95,11 @@ Engine bullet() {
     for (const int iterations : {10, 200})
       for (const double erp : {0.2, 0.8}) {
         const BulletOptions options{margin.of_clearance, margin.drawn_in, iterations, erp};
-        engine.pushes.push_back({.text = fmt::format("{}, {} iterations, erp2 {}", margin.text, iterations, erp),
-                                 .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
-                                   return std::make_unique<Bullet>(task, options, start);
-                                 }});
+        engine.pushes.push_back(
+            {.text = fmt::format("{}, {} iterations, erp2 {}", margin.text, iterations, erp),
+             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
+               return std::make_unique<Bullet>(task, options, start);
+             }});
       }
   return engine;
 }

@@ -1,9 +1,9 @@
-// Bullet's contact queries at their own best. A world's step keeps contacts from pose to pose, which helps what moves on
-// and misleads what is put elsewhere: here every pose is asked afresh.
+// Bullet's contact queries at their own best. A world's step keeps contacts from pose to pose, which helps what moves
+// on and misleads what is put elsewhere: here every pose is asked afresh.
 //
 // What its users can choose: how finely the hole is cut; whether it is cut at all; who walks over the pieces; how depth
-// is found where cores overlap; and margins. A hull's margin lies around it: the hull may be drawn in by it, so that its
-// faces are where they belong and its edges are rounded. A cylinder's margin is within it.
+// is found where cores overlap; and margins. A hull's margin lies around it: the hull may be drawn in by it, so that
+// its faces are where they belong and its edges are rounded. A cylinder's margin is within it.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
@@ -101,8 +101,7 @@ enum class Block { wedges, mesh, gimpact };
 /// btCollisionWorld::contactPairTest on the block as a compound of wedges, a mesh with Bullet's tree, or GImpact's.
 class PairTest final : public Finder {
  public:
-  PairTest(double clearance, Block block, int sides, const Margins& margins)
-      : pin_shape_(pin_of(clearance, margins)) {
+  PairTest(double clearance, Block block, int sides, const Margins& margins) : pin_shape_(pin_of(clearance, margins)) {
     if (block == Block::wedges) {
       hulls_ = hulls_of(sides, margins);
       auto compound = std::make_unique<btCompoundShape>();
@@ -159,17 +158,17 @@ class PairTest final : public Finder {
 
 std::vector<FindSetting> bullet_finds() {
   std::vector<FindSetting> finds;
-  const std::vector<Margins> around = {{-1, false},   {0, false},    {1e-5, false}, {1e-4, false},
+  const std::vector<Margins> around = {{-1, false},  {0, false},   {1e-5, false}, {1e-4, false},
                                        {1e-4, true}, {1e-3, true}, {3e-3, true}};
   for (const int sides : {64, 256})
     for (const Block block : {Block::mesh, Block::gimpact})
       for (const Margins& margins : {Margins{-1, false}, Margins{0, false}, Margins{1e-4, false}})
-        finds.push_back({.text = fmt::format("{} of {} sides, {}, contactPairTest",
-                                             block == Block::mesh ? "triangle mesh" : "GImpact mesh", sides,
-                                             margins.text()),
-                         .make = [sides, block, margins](double clearance) -> std::unique_ptr<Finder> {
-                           return std::make_unique<PairTest>(clearance, block, sides, margins);
-                         }});
+        finds.push_back(
+            {.text = fmt::format("{} of {} sides, {}, contactPairTest",
+                                 block == Block::mesh ? "triangle mesh" : "GImpact mesh", sides, margins.text()),
+             .make = [sides, block, margins](double clearance) -> std::unique_ptr<Finder> {
+               return std::make_unique<PairTest>(clearance, block, sides, margins);
+             }});
   for (const int wedges : {64, 256})
     for (const Margins& margins : around) {
       for (const bool epa : {false, true})

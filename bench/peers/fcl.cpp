@@ -1,5 +1,5 @@
-// FCL: contacts of a mesh of the block, or of wedges, with its own cylinder. It has no dynamics: each contact pushes with
-// a spring and a damper, and the step is semi-implicit, as a user of it would begin.
+// FCL: contacts of a mesh of the block, or of wedges, with its own cylinder. It has no dynamics: each contact pushes
+// with a spring and a damper, and the step is semi-implicit, as a user of it would begin.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/default_broadphase_callbacks.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -112,8 +112,7 @@ class FclWedges final : public Finder {
         std::vector<int>{4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7});
     for (int i = 0; i < wedges; ++i) {
       const auto vertices = std::make_shared<const std::vector<fcl::Vector3d>>(wedge(i, {.wedges = wedges}));
-      pieces_.push_back(
-          std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Convexd>(vertices, 6, faces)));
+      pieces_.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Convexd>(vertices, 6, faces)));
       tree_.registerObject(pieces_.back().get());
     }
     tree_.setup();
@@ -138,7 +137,7 @@ class FclWedges final : public Finder {
 
 }  // namespace
 
-Engine fcl_engine() {
+Engine peer_fcl() {
   Engine engine{.name = "FCL", .version = FCL_VERSION, .package = "libfcl-dev"};
   for (const double stiffness : {1e4, 1e5, 4e5})
     for (const double damping : {0.1, 0.5}) {

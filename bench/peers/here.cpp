@@ -128,15 +128,14 @@ void add_pushes(Engine& engine, const Hybrid& hybrid) {
     for (const Integrator integrator : {Integrator::implicit, Integrator::semi_implicit}) {
       if (is_exact && integrator == Integrator::semi_implicit) continue;  // its problem holds the coupling, too
       const Dials dials{hybrid, integrator, size};
-      engine.pushes.push_back(
-          {.text = fmt::format("{} every {:g} mm{}", is_exact ? "points" : "voxels", 1e3 * size,
-                               is_exact                                ? ""
-                               : integrator == Integrator::implicit ? ", implicit"
-                                                                       : ", semi-implicit"),
-           .round = true,
-           .make = [dials](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
-             return std::make_unique<InScene>(task, dials, start);
-           }});
+      engine.pushes.push_back({.text = fmt::format("{} every {:g} mm{}", is_exact ? "points" : "voxels", 1e3 * size,
+                                                   is_exact                             ? ""
+                                                   : integrator == Integrator::implicit ? ", implicit"
+                                                                                        : ", semi-implicit"),
+                               .round = true,
+                               .make = [dials](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
+                                 return std::make_unique<InScene>(task, dials, start);
+                               }});
     }
 }
 

@@ -29,12 +29,12 @@ struct Motion {
 
 /// How the block is cut into convex wedges.
 struct Cut {
-  double chamfer = 0;     ///< m
-  int wedges = kWedges;   ///< a multiple of 8: the square's corners are vertices
-  double drawn_in = 0;    ///< m: faces that can be touched lie so far inside, for an engine that adds a margin around
+  double chamfer = 0;    ///< m
+  int wedges = kWedges;  ///< a multiple of 8: the square's corners are vertices
+  double drawn_in = 0;   ///< m: faces that can be touched lie so far inside, for an engine that adds a margin around
 };
-/// The vertices of a wedge: a sector between the hole's polygon, chamfered at its upper rim, and the outer square. First
-/// those of one side, from the hole's lower edge up and around, then those of the other in the same order.
+/// The vertices of a wedge: a sector between the hole's polygon, chamfered at its upper rim, and the outer square.
+/// First those of one side, from the hole's lower edge up and around, then those of the other in the same order.
 /// @pre chamfer is 0 or above drawn_in
 [[nodiscard]] std::vector<Vector3d> wedge(int sector, const Cut& cut);
 

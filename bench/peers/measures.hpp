@@ -40,11 +40,11 @@ struct Pushed {
 /// Contact queries at recorded poses under one setting.
 struct Found {
   std::string text;
-  std::vector<double> us;         ///< the median over the poses, of each round
-  double us99 = 0;                ///< over poses and rounds
-  double error = 0, error95 = 0;  ///< m, of the depth, where the pin penetrates and something was found
-  double gap_seen = 0;            ///< share of the clear poses of which a gap was told
-  double gap_error95 = 0;         ///< m, of these
+  std::vector<double> us;           ///< the median over the poses, of each round
+  double us99 = 0;                  ///< over poses and rounds
+  double error = 0, error95 = 0;    ///< m, of the depth, where the pin penetrates and something was found
+  double gap_seen = 0;              ///< share of the clear poses of which a gap was told
+  double gap_error95 = 0;           ///< m, of these
   double missed = 0, imagined = 0;  ///< share of poses: 10 um or more deep, nothing found; clear, 10 um or more found
 
   [[nodiscard]] Interval time() const { return tradeoff::interval_of(us); }

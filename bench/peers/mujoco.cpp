@@ -12,12 +12,12 @@
 namespace verisim::peers {
 namespace {
 
-/// Contact parameters; whether the friction cone is elliptic, whether convex shapes may touch at several points, and how
-/// far off contacts are told.
+/// Contact parameters; whether the friction cone is elliptic, whether convex shapes may touch at several points, and
+/// how far off contacts are told.
 struct MuJoCoOptions {
   std::string contact;
   bool elliptic = false, several = false;
-  double margin = 0.0005;  ///< m
+  double margin = 0.0005;   ///< m
   double tolerance = 1e-6;  ///< of the search for the deepest point (mpr_tolerance)
   int wedges = kWedges;
 };
@@ -92,7 +92,7 @@ class MuJoCo final : public Pusher, public Finder {
 
 }  // namespace
 
-Engine mujoco() {
+Engine peer_mujoco() {
   Engine engine{.name = "MuJoCo", .version = mj_versionString(), .package = "libmujoco-dev"};
   for (const char* time_constant : {"0.02", "0.004", "0.002"})  // 2 steps are the least that it takes
     for (const char* impedance : {"0.9 0.95 0.001", "0.95 0.99 0.001", "0.99 0.9999 0.001"})
@@ -100,10 +100,11 @@ Engine mujoco() {
         const MuJoCoOptions options{.contact = fmt::format("solref='{} 1' solimp='{}'", time_constant, impedance),
                                     .elliptic = elliptic,
                                     .several = elliptic};
-        engine.pushes.push_back({.text = options.contact + (elliptic ? " elliptic multiccd" : " pyramidal"),
-                                 .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
-                                   return std::make_unique<MuJoCo>(task, options, start);
-                                 }});
+        engine.pushes.push_back(
+            {.text = options.contact + (elliptic ? " elliptic multiccd" : " pyramidal"),
+             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
+               return std::make_unique<MuJoCo>(task, options, start);
+             }});
       }
   for (const int wedges : {64, 256})
     for (const double margin : {0.0, 0.0005, 0.005})

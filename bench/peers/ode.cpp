@@ -144,7 +144,7 @@ class Ode final : public Pusher, public Finder {
 
 }  // namespace
 
-Engine ode() {
+Engine peer_ode() {
   Engine engine{.name = "ODE", .version = VERISIM_ODE_VERSION, .package = "libode-dev"};
   for (const bool boxes : {true, false})
     for (const int iterations : {0, 20, 200})

@@ -62,10 +62,10 @@ struct Engine {
 
 /// This project's methods, each as an engine of its own.
 [[nodiscard]] std::vector<Engine> engines_here();
-[[nodiscard]] Engine mujoco();
-[[nodiscard]] Engine bullet();
+[[nodiscard]] Engine peer_mujoco();
+[[nodiscard]] Engine peer_bullet();
 [[nodiscard]] std::vector<FindSetting> bullet_finds();
-[[nodiscard]] Engine ode();
-[[nodiscard]] Engine fcl_engine();
+[[nodiscard]] Engine peer_ode();
+[[nodiscard]] Engine peer_fcl();
 
 }  // namespace verisim::peers

@@ -125,8 +125,9 @@ void check_scenario(const TradeoffOptions& o) {
   for (const bool asked : {!s.vary.empty(), !s.truth.empty(), !s.sets.empty(), !s.binds.empty(), s.duration.has_value(),
                            !o.budget.empty(), !o.error.empty(), !o.by.empty()})
     if (asked)
-      fail(ErrorKind::usage, "--vary, --truth, --set, --bind, --duration, --budget, --error and --by are of a SCENARIO; "
-                             "name it, or leave them out");
+      fail(ErrorKind::usage,
+           "--vary, --truth, --set, --bind, --duration, --budget, --error and --by are of a SCENARIO; "
+           "name it, or leave them out");
 }
 
 Table table_without_scenario(Kind by) {
@@ -205,7 +206,7 @@ void add_tradeoff(CLI::App& app, int& exit_code) {
   auto* peers = command->add_flag("--peers", o->peers,
                                   "MuJoCo, Bullet, ODE and FCL, each at its best of a search, beside this project's "
                                   "methods: the same poses, the same driven insertions (needs verisim-peers)");
-  command->add_flag("--quick", o->quick, "Of --peers: two of six insertions, two settings of every grid")->needs(peers);
+  command->add_flag("--quick", o->quick, "Of --peers: one of six insertions, two settings of every grid")->needs(peers);
   add_out_options(*command, o->out, "Folder for tradeoff.json, tradeoff.csv and tradeoff.svg");
   command->add_flag("--json", o->json, "One JSON object on stdout");
   command->footer(

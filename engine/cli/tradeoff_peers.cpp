@@ -86,12 +86,14 @@ PeersFound ask_peers(const std::string& program, bool quick, bool quiet) {
   const auto has = [&](const char* key) { return said.is_object() && said.contains(key); };
   if (!has("format") || said["format"] != tradeoff::kPeersFormat || !has("format_version") ||
       said["format_version"] != 1 || !has("peers") || !has("commit") || !said["commit"].is_string())
-    fail(ErrorKind::input, "{}: does not say what this program reads; build it again: ninja -C build {}", program, kName);
+    fail(ErrorKind::input, "{}: does not say what this program reads; build it again: ninja -C build {}", program,
+         kName);
   (void)tradeoff::text_of_peers(said["peers"]);  // an error if it is no such list
   const std::string of = said["commit"].get<std::string>();
   PeersFound found{said["peers"], {}};
   if (of != commit())
-    found.note = fmt::format("{} was built from commit {}, this program from {}: build both", kName, shown(of, 40), commit());
+    found.note =
+        fmt::format("{} was built from commit {}, this program from {}: build both", kName, shown(of, 40), commit());
   return found;
 }
 

@@ -26,36 +26,35 @@ std::vector<std::string> begun(const ordered_json& row, const ordered_json& time
 }
 
 std::string table_of_queries(const ordered_json& peers) {
-  TextTable table({"engine", "query, us", "from", "to", "99 %", "depth off, um", "95 %", "gaps told, %", "off, um, 95 %",
-                   "missed, %", "imagined, %", "best of", "setting"});
+  TextTable table({"engine", "query, us", "from", "to", "99 %", "depth off, um", "95 %", "gaps told, %",
+                   "off, um, 95 %", "missed, %", "imagined, %", "best of", "setting"});
   for (const ordered_json& row : peers) {
     if (row.contains("missing") || row.at("poses").is_null()) continue;
     const ordered_json& p = row.at("poses");
     std::vector<std::string> cells = begun(row, p.at("query_us"));
     const ordered_json& gap = p.at("gap_error_m");
-    cells.insert(cells.end(),
-                 {scaled(p.at("query_us_p99"), 1), scaled(p.at("depth_error_m").at("p50"), 1e6),
-                  scaled(p.at("depth_error_m").at("p95"), 1e6), scaled(p.at("gap_told"), 100),
-                  gap.is_null() ? "" : scaled(gap.at("p95"), 1e6), scaled(p.at("missed"), 100),
-                  scaled(p.at("imagined"), 100), fmt::format("{}", row.at("searched").at("poses").size()),
-                  shown(p.at("setting").get<std::string>(), 100)});
+    cells.insert(cells.end(), {scaled(p.at("query_us_p99"), 1), scaled(p.at("depth_error_m").at("p50"), 1e6),
+                               scaled(p.at("depth_error_m").at("p95"), 1e6), scaled(p.at("gap_told"), 100),
+                               gap.is_null() ? "" : scaled(gap.at("p95"), 1e6), scaled(p.at("missed"), 100),
+                               scaled(p.at("imagined"), 100), fmt::format("{}", row.at("searched").at("poses").size()),
+                               shown(p.at("setting").get<std::string>(), 100)});
     table.add(std::move(cells));
   }
   return table.text();
 }
 
 std::string table_of_insertions(const ordered_json& peers) {
-  TextTable table({"engine", "step, us", "from", "to", "passed", "deepest, um", "of clearance", "force off, N", "best of",
-                   "setting"});
+  TextTable table({"engine", "step, us", "from", "to", "passed", "deepest, um", "of clearance", "force off, N",
+                   "best of", "setting"});
   for (const ordered_json& row : peers) {
     if (row.contains("missing")) continue;
     const ordered_json& i = row.at("insertion");
     std::vector<std::string> cells = begun(row, i.at("step_us"));
-    cells.insert(cells.end(), {fmt::format("{} of {}", i.at("passed").get<int>(), i.at("of").get<int>()),
-                               scaled(i.at("overlap_m"), 1e6), scaled(i.at("overlap_of_clearance"), 1),
-                               scaled(i.at("force_error_N"), 1),
-                               fmt::format("{}", row.at("searched").at("insertion").size()),
-                               shown(i.at("setting").get<std::string>(), 100)});
+    cells.insert(
+        cells.end(),
+        {fmt::format("{} of {}", i.at("passed").get<int>(), i.at("of").get<int>()), scaled(i.at("overlap_m"), 1e6),
+         scaled(i.at("overlap_of_clearance"), 1), scaled(i.at("force_error_N"), 1),
+         fmt::format("{}", row.at("searched").at("insertion").size()), shown(i.at("setting").get<std::string>(), 100)});
     table.add(std::move(cells));
   }
   return table.text();
@@ -83,11 +82,13 @@ std::string text_of_peers(const ordered_json& peers) {
         "a hand that leans by half a degree and stands 1 mm beside the axis pushes a pin of 1 kg through a hole; {}\n"
         "settings tried, of each engine the one with most passes, then least overlap, then fastest; overlap and force\n"
         "are of those that passed:\n{}{}"
-        "times are medians with their interval over repetitions, of one machine in one run: compare them with each other\n"
+        "times are medians with their interval over repetitions, of one machine in one run: compare them with each "
+        "other\n"
         "alone. Force is that of the last 0.1 s, at rest, where it has a closed form.\n",
         poses, found, table_of_queries(peers), pushed, table_of_insertions(peers), missing);
   } catch (const ordered_json::exception& wrong) {
-    fail(ErrorKind::input, "what verisim-peers said is no list of engines ({}); build it again: ninja -C build verisim-peers",
+    fail(ErrorKind::input,
+         "what verisim-peers said is no list of engines ({}); build it again: ninja -C build verisim-peers",
          shown(wrong.what(), 120));
   }
 }

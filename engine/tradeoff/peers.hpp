@@ -1,10 +1,11 @@
-// What other people's engines did on the same task: the list that the program verisim-peers (bench/peers) prints as JSON
-// and `verisim tradeoff --peers` shows. A row is an engine, or one of this project's methods, each at its best of all
-// settings that were tried:
+// What other people's engines did on the same task: the list that the program verisim-peers (bench/peers) prints as
+// JSON and `verisim tradeoff --peers` shows. A row is an engine, or one of this project's methods, each at its best of
+// all settings that were tried:
 //
 //   name, version        of the engine; version null and `missing`, a Debian package: it was not there
 //   setting, searched    words of the best, for `poses` and for `insertion`; figures of every setting that was tried
-//   poses                contact queries at recorded poses: query_us, depth_error_m, gap_error_m, missed, imagined; null:
+//   poses                contact queries at recorded poses: query_us, depth_error_m, gap_error_m, missed, imagined;
+//   null:
 //                        the engine has no query of its own
 //   insertion            driven insertions: passed, of, overlap_m, overlap_of_clearance, force_error_N, step_us
 //

@@ -25,7 +25,8 @@ def why_not():
 @unittest.skipIf(why_not() is not None, why_not())
 class Peers(ProgramTest):
     def test_ours_and_theirs_stand_in_one_table_of_the_same_poses_and_insertions(self):
-        table = self.run_json("tradeoff", "--peers", "--quick", "-o", "out")
+        done = self.succeed("tradeoff", "--peers", "--quick", "-o", "out", "--json", timeout=550)
+        table = json.loads(done.stdout)
         with open(self.path("out/tradeoff.json")) as f:
             self.assertEqual(json.load(f), table)
         self.assertEqual((table["format"], table["rows"]), ("verisim-tradeoff", []))
