@@ -7,6 +7,7 @@ import subprocess
 import unittest
 
 from program import SHARED, SOURCE, VERISIM, ProgramTest
+from tradeoff_test import PUSHED
 
 PEERS = os.path.join(os.path.dirname(VERISIM), "verisim-peers")
 POSES = os.path.join(os.path.dirname(SHARED), "reference", "peers", "peg_poses.csv")
@@ -79,7 +80,9 @@ class WithoutPeers(ProgramTest):
         program = self.path("verisim")
         if not os.path.exists(program):
             shutil.copy(VERISIM, program)
-        return subprocess.run([program, "tradeoff", *args], capture_output=True, text=True, cwd=self.folder, timeout=60)
+        environment = {**os.environ, "VERISIM_CAD": os.path.join(os.path.dirname(VERISIM), "verisim-cad")}
+        return subprocess.run([program, "tradeoff", *args], capture_output=True, text=True, cwd=self.folder, timeout=120,
+                              env=environment)
 
     def refuse_alone(self, words, *args):
         done = self.alone(*args)
@@ -120,6 +123,18 @@ class WithoutPeers(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("ODE: not there when verisim-peers was built; apt install libode-dev", done.stdout)
         self.assertIn("note: verisim-peers was built from commit another", done.stdout)
+
+    def test_with_a_scenario_they_stand_behind_its_settings(self):
+        self.play("""echo '{"format": "verisim-peers", "format_version": 1, "commit": "another", "peers": """
+                  """[{"name": "ODE", "version": null, "missing": "libode-dev"}]}'\n""")
+        self.write("pushed.lua", PUSHED)
+        done = self.alone("pushed.lua", "--vary", "hybrid=off,exact", "--repeat", "1", "--peers", "-o", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(done.stdout.index("front by"), done.stdout.index("ODE: not there"))
+        with open(self.path("out/tradeoff.json")) as f:
+            table = json.load(f)
+        self.assertEqual((len(table["rows"]), table["peers"][0]["missing"]), (2, "libode-dev"))
+        self.assertTrue(any("another" in note for note in table["notes"]))
 
     def test_what_needs_a_scenario_is_refused_without_one(self):
         for args in ((), ("--vary", "hybrid=off,exact")):
