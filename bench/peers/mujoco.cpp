@@ -20,6 +20,7 @@ struct MuJoCoOptions {
   double margin = 0.0005;   ///< m
   double tolerance = 1e-6;  ///< of the search for the deepest point (mpr_tolerance)
   int wedges = kWedges;
+  int rows = 8000;  ///< of the contact problem, whose matrix is reserved: 512 MB
 };
 
 class MuJoCo final : public Pusher, public Finder {
@@ -77,13 +78,14 @@ class MuJoCo final : public Pusher, public Finder {
     }
     const Vector3d I = coupling_.inertia();
     return fmt::format(
-        "<mujoco><size nconmax='2000' njmax='8000'/><option timestep='{}' gravity='0 0 0' cone='{}' iterations='200' "
+        "<mujoco><size nconmax='2000' njmax='{}'/><option timestep='{}' gravity='0 0 0' cone='{}' iterations='200' "
         "tolerance='1e-12' mpr_tolerance='{}' mpr_iterations='200'><flag multiccd='{}'/></option>"
         "<default><geom condim='1' margin='{}' gap='0' {}/></default>"
         "<asset>{}</asset><worldbody><body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='{} {} {}'/>"
         "<geom type='cylinder' size='{:.17g} {:.17g}' contype='2' conaffinity='1'/></body>{}</worldbody></mujoco>",
-        kStep, options.elliptic ? "elliptic" : "pyramidal", options.tolerance, options.several ? "enable" : "disable",
-        options.margin, options.contact, meshes, I.x(), I.y(), I.z(), coupling_.radius, kPinLength / 2, geoms);
+        options.rows, kStep, options.elliptic ? "elliptic" : "pyramidal", options.tolerance,
+        options.several ? "enable" : "disable", options.margin, options.contact, meshes, I.x(), I.y(), I.z(),
+        coupling_.radius, kPinLength / 2, geoms);
   }
   Coupling coupling_;
   std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model_{nullptr, &mj_deleteModel};
@@ -111,7 +113,7 @@ Engine peer_mujoco() {
       for (const bool several : {false, true})
         for (const double tolerance : {1e-6, 1e-9}) {
           const MuJoCoOptions options{
-              .contact = "", .several = several, .margin = margin, .tolerance = tolerance, .wedges = wedges};
+              .contact = "", .several = several, .margin = margin, .tolerance = tolerance, .wedges = wedges, .rows = 1};
           engine.finds.push_back({.text = fmt::format("{} wedges, margin {:g} mm, mpr_tolerance {:g}{}", wedges,
                                                       1e3 * margin, tolerance, several ? ", multiccd" : ""),
                                   .make = [options](double clearance) -> std::unique_ptr<Finder> {

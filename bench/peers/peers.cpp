@@ -115,7 +115,7 @@ int run(const Options& o) {
   const std::vector<Engine> engines = all_engines(o.quick);
   const Poses poses = recorded_poses();
   std::vector<std::vector<Pushed>> pushed = push_all(engines, insertions(o.quick), say);
-  push_again(engines, pushed, o.quick ? 1 : 5, say);
+  push_again(engines, pushed, o.quick ? 1 : 3, say);
   const std::vector<std::vector<Found>> found = find_all(engines, poses, o.quick ? 2 : 7, say);
   line.say("");
   ordered_json json{{"format", tradeoff::kPeersFormat},
