@@ -4,7 +4,6 @@
 // What its users can choose: how finely the hole is cut; whether it is cut at all; who walks over the pieces; how depth
 // is found where cores overlap; and margins. A hull's margin lies around it: the hull may be drawn in by it, so that
 // its faces are where they belong and its edges are rounded. A cylinder's margin is within it.
-#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btMinkowskiPenetrationDepthSolver.h>
@@ -96,31 +95,21 @@ class Pairs final : public Finder {
   btTransform pin_at_;
 };
 
-enum class Block { wedges, mesh, gimpact };
-
-/// btCollisionWorld::contactPairTest on the block as a compound of wedges, a mesh with Bullet's tree, or GImpact's.
+/// btCollisionWorld::contactPairTest on the block as a compound of wedges, or as a mesh with Bullet's tree. (It treats
+/// GImpact's meshes as it treats those.)
 class PairTest final : public Finder {
  public:
-  PairTest(double clearance, Block block, int sides, const Margins& margins) : pin_shape_(pin_of(clearance, margins)) {
-    if (block == Block::wedges) {
+  PairTest(double clearance, bool as_mesh, int sides, const Margins& margins) : pin_shape_(pin_of(clearance, margins)) {
+    if (as_mesh) {
+      const Mesh mesh = block_mesh(0, sides);
+      const auto corner = [&](int i) { return of(mesh.vertices[static_cast<std::size_t>(i)]); };
+      for (const auto& [a, b, c] : mesh.triangles) triangles_.addTriangle(corner(a), corner(b), corner(c));
+      block_shape_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, true);
+    } else {
       hulls_ = hulls_of(sides, margins);
       auto compound = std::make_unique<btCompoundShape>();
       for (const auto& hull : hulls_) compound->addChildShape(btTransform::getIdentity(), hull.get());
       block_shape_ = std::move(compound);
-    } else {
-      const Mesh mesh = block_mesh(0, sides);
-      for (const auto& [a, b, c] : mesh.triangles)
-        triangles_.addTriangle(of(mesh.vertices[static_cast<std::size_t>(a)]),
-                               of(mesh.vertices[static_cast<std::size_t>(b)]),
-                               of(mesh.vertices[static_cast<std::size_t>(c)]));
-      if (block == Block::mesh) {
-        block_shape_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, true);
-      } else {
-        btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-        auto shape = std::make_unique<btGImpactMeshShape>(&triangles_);
-        shape->updateBound();
-        block_shape_ = std::move(shape);
-      }
     }
     if (margins.margin >= 0) block_shape_->setMargin(margins.margin);
     block_.setCollisionShape(block_shape_.get());
@@ -161,14 +150,11 @@ std::vector<FindSetting> bullet_finds() {
   const std::vector<Margins> around = {{-1, false},  {0, false},   {1e-5, false}, {1e-4, false},
                                        {1e-4, true}, {1e-3, true}, {3e-3, true}};
   for (const int sides : {64, 256})
-    for (const Block block : {Block::mesh, Block::gimpact})
-      for (const Margins& margins : {Margins{-1, false}, Margins{0, false}, Margins{1e-4, false}})
-        finds.push_back(
-            {.text = fmt::format("{} of {} sides, {}, contactPairTest",
-                                 block == Block::mesh ? "triangle mesh" : "GImpact mesh", sides, margins.text()),
-             .make = [sides, block, margins](double clearance) -> std::unique_ptr<Finder> {
-               return std::make_unique<PairTest>(clearance, block, sides, margins);
-             }});
+    for (const Margins& margins : {Margins{-1, false}, Margins{0, false}, Margins{1e-4, false}})
+      finds.push_back({.text = fmt::format("mesh of {} sides, {}, contactPairTest", sides, margins.text()),
+                       .make = [sides, margins](double clearance) -> std::unique_ptr<Finder> {
+                         return std::make_unique<PairTest>(clearance, true, sides, margins);
+                       }});
   for (const int wedges : {64, 256})
     for (const Margins& margins : around) {
       for (const bool epa : {false, true})
@@ -179,7 +165,7 @@ std::vector<FindSetting> bullet_finds() {
                          }});
       finds.push_back({.text = fmt::format("{} wedges, {}, contactPairTest", wedges, margins.text()),
                        .make = [wedges, margins](double clearance) -> std::unique_ptr<Finder> {
-                         return std::make_unique<PairTest>(clearance, Block::wedges, wedges, margins);
+                         return std::make_unique<PairTest>(clearance, false, wedges, margins);
                        }});
     }
   return finds;

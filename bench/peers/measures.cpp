@@ -105,7 +105,7 @@ std::vector<std::vector<Pushed>> push_all(const std::vector<Engine>& engines, co
 }
 
 std::size_t best_of(const std::vector<Pushed>& settings) {
-  const auto rank = [](const Pushed& p) { return std::tuple(-p.passes(), p.worst(), p.median_us()); };
+  const auto rank = [](const Pushed& p) { return std::tuple(-p.passes(), std::floor(10 * p.worst()), p.median_us()); };
   const auto best = std::min_element(settings.begin(), settings.end(),
                                      [&](const Pushed& a, const Pushed& b) { return rank(a) < rank(b); });
   return static_cast<std::size_t>(best - settings.begin());
@@ -200,7 +200,7 @@ std::vector<std::vector<Found>> find_all(const std::vector<Engine>& engines, con
 
 std::size_t best_of(const std::vector<Found>& settings) {
   const auto rank = [](const Found& f) {
-    return std::tuple(std::round(1000 * (f.missed + f.imagined)), std::round(1e6 * f.error95), f.time().median);
+    return std::tuple(std::round(1000 * (f.missed + f.imagined)), std::floor(f.error95 / kSeen), f.time().median);
   };
   const auto best = std::min_element(settings.begin(), settings.end(),
                                      [&](const Found& a, const Found& b) { return rank(a) < rank(b); });

@@ -56,7 +56,8 @@ using Progress = std::function<void(const std::string&)>;
 /// Every setting of every engine through all tasks, task by task, so that all have the machine in turns. As `engines`.
 [[nodiscard]] std::vector<std::vector<Pushed>> push_all(const std::vector<Engine>& engines,
                                                         const std::vector<Insertion>& tasks, const Progress& say);
-/// The setting with most passes, of these the one with the least worst(), of these the fastest. @pre not empty
+/// The setting with most passes, of these one with the least worst(), in steps of a tenth of the clearance, of these
+/// the fastest. @pre not empty
 [[nodiscard]] std::size_t best_of(const std::vector<Pushed>& settings);
 /// The tasks again, so many times, with each engine's best in turns: times alone.
 void push_again(const std::vector<Engine>& engines, std::vector<std::vector<Pushed>>& pushed, int repeats,
@@ -74,8 +75,8 @@ struct Poses {
 /// Every setting of every engine at all poses, round by round. As `engines`.
 [[nodiscard]] std::vector<std::vector<Found>> find_all(const std::vector<Engine>& engines, const Poses& poses,
                                                        int rounds, const Progress& say);
-/// The setting that errs least often (missed or imagined, to a tenth of a percent), of these the one of least error (95
-/// %, to a micrometre), of these the fastest. @pre not empty
+/// The setting that errs least often (missed or imagined, to a tenth of a percent), of these one of least error (95 %,
+/// in steps of 10 um, which is what counts as seen), of these the fastest. @pre not empty
 [[nodiscard]] std::size_t best_of(const std::vector<Found>& settings);
 
 }  // namespace verisim::peers

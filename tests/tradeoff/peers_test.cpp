@@ -13,7 +13,8 @@ using nlohmann::ordered_json;
 ordered_json engine() {
   return ordered_json::parse(R"({
     "name": "Engine", "version": "1.2", "setting": {"poses": "64 boxes", "insertion": "stiff"},
-    "searched": {"poses": [{}, {}], "insertion": [{}, {}, {}]},
+    "searched": {"poses": [{"missed": 0.015, "imagined": 0, "depth_error_m": {"p95": 4.1e-7}},
+                           {"missed": 0.5, "imagined": 0, "depth_error_m": {"p95": 3e-9}}], "insertion": [{}, {}, {}]},
     "poses": {"setting": "64 boxes", "poses": 1000, "query_us": {"median": 40.5, "low": 39.6, "high": 52.5},
               "query_us_p99": 85.8, "depth_error_m": {"p50": 2.09e-6, "p95": 6.72e-6}, "gap_told": 0.25,
               "gap_error_m": {"p95": 3e-6}, "missed": 0.015, "imagined": 0},
@@ -33,8 +34,8 @@ void expect_all(const std::string& text, std::initializer_list<const char*> word
 
 TEST(Peers, AnEngineStandsInBothTablesInUnitsOfPeople) {
   const std::string text = text_of_peers(list({engine()}));
-  expect_all(text, {"1000 recorded poses", "2 settings tried", "40.5", "39.6", "52.5", "2.09", "6.72", "25", "1.5",
-                    "64 boxes", "Engine 1.2", "1 of 2", "12.5", "0.125", "0.05", "30.9", "stiff"});
+  expect_all(text, {"1000 recorded poses", "2 settings tried", "40.5", "39.6", "52.5", "2.09", "6.72", "0.41", "25",
+                    "1.5", "64 boxes", "Engine 1.2", "1 of 2", "12.5", "0.125", "0.05", "30.9", "stiff"});
 }
 
 TEST(Peers, WithoutAPassThereIsNoOverlapAndNoForce) {
