@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 
 #include "bench/peers/peer.hpp"
@@ -17,7 +18,7 @@ namespace {
 struct MuJoCoOptions {
   std::string contact;
   bool elliptic = false, several = false;
-  double margin = 0.0005;   ///< m
+  double margin = 0;        ///< m; it pushes from there, so an insertion has none: it would close the hole
   double tolerance = 1e-6;  ///< of the search for the deepest point (mpr_tolerance)
   int wedges = kWedges;
   int rows = 8000;  ///< of the contact problem, whose matrix is reserved: 512 MB
@@ -41,6 +42,7 @@ class MuJoCo final : public Pusher, public Finder {
   }
   [[nodiscard]] Motion motion() const override {
     const double *q = data_->qpos, *v = data_->qvel;
+    if (blown_up_) return {{Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()), Quaterniond::Identity()}};
     Motion m{{{q[0], q[1], q[2]}, Quaterniond(q[3], q[4], q[5], q[6])}};
     m.v = {v[0], v[1], v[2]};
     m.omega = m.X_WB.rotation * Vector3d(v[3], v[4], v[5]);
@@ -51,6 +53,9 @@ class MuJoCo final : public Pusher, public Finder {
     double* applied = data_->xfrc_applied + 6;  // of the first body after the world
     for (int i = 0; i < 3; ++i) applied[i] = w.force[i], applied[3 + i] = w.torque[i];
     mj_step(model_.get(), data_.get());
+    // It begins again where the model has the pin: within the hole, as if it had come through.
+    for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
+      blown_up_ = blown_up_ || data_->warning[warning].number > 0;
     return w.force;
   }
   void place(const Pose& X) override {
@@ -88,6 +93,7 @@ class MuJoCo final : public Pusher, public Finder {
         coupling_.radius, kPinLength / 2, geoms);
   }
   Coupling coupling_;
+  bool blown_up_ = false;
   std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model_{nullptr, &mj_deleteModel};
   std::unique_ptr<mjData, decltype(&mj_deleteData)> data_{nullptr, &mj_deleteData};
 };
