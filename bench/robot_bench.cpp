@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "bench/promise.hpp"
+#include "engine/robot/boards.hpp"
 #include "engine/robot/odometry.hpp"
-#include "engine/robot/plant.hpp"
+#include "engine/robot/robot.hpp"
 
 namespace verisim::robot {
 namespace {
@@ -42,6 +43,26 @@ void BM_Plant(benchmark::State& state) {
   }
   bench::at_most(state, "us_per_millisecond", least / kMilliseconds * 1e6, 3);
 }
+/// The robot as scenes have it: tracker, server, lines, host board with its firmware, plant. Its promise is what it
+/// adds to a frame of a millisecond.
+void BM_Robot(benchmark::State& state) {
+  double least = 1;
+  for (auto _ : state) {
+    RobotSettings settings;
+    settings.pilot.walls.emplace().corners = rectangle(-2, 2, -1.5, 1.5);
+    Robot robot(settings, make_board("host"));
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 1; i <= kMilliseconds; ++i) {
+      robot.follow(i % 2000 < 1000 ? 0.08 : -0.08, 0.02, Vector3d(0, 0, 0.55));
+      robot.load({{3, 0, -2}, {0, 1, 0}});
+      robot.advance(i * kMillisecond);
+    }
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    if (std::abs(robot.place().y) < 0.1) return bench::wrong(state, "the robot did not drive");
+  }
+  bench::at_most(state, "us_per_millisecond", least / kMilliseconds * 1e6, 5);
+}
+BENCHMARK(BM_Robot)->Iterations(20)->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_Plant)->Iterations(20)->Unit(benchmark::kMillisecond);
 
 }  // namespace

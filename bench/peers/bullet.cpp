@@ -2,8 +2,8 @@
 #include <btBulletDynamicsCommon.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
+#include <string>
 
 #include "bench/peers/peer.hpp"
 
@@ -12,19 +12,21 @@ namespace {
 
 struct BulletOptions {
   double margin_of_clearance = 0;  ///< 0: Bullet's own margins
+  double drawn_in = 0;             ///< m: this margin instead, around wedges that are drawn in by it
   int iterations = 200;
   double erp = 0.2;
 };
 
-class Bullet final : public Peer {
+class Bullet final : public Pusher {
  public:
   Bullet(const Insertion& task, const BulletOptions& options, const Pose& start)
       : coupling_{kHoleRadius - task.clearance},
         pin_shape_(btVector3(coupling_.radius, coupling_.radius, kPinLength / 2)) {
-    const double margin = options.margin_of_clearance * task.clearance;
+    const double margin = options.drawn_in > 0 ? options.drawn_in : options.margin_of_clearance * task.clearance;
     for (int i = 0; i < kWedges; ++i) {
       hulls_.push_back(std::make_unique<btConvexHullShape>());
-      for (const Vector3d& p : wedge(i, task.chamfer)) hulls_.back()->addPoint(of(p));
+      for (const Vector3d& p : wedge(i, {.chamfer = task.chamfer, .drawn_in = options.drawn_in}))
+        hulls_.back()->addPoint(of(p));
       if (margin > 0) hulls_.back()->setMargin(margin);
       block_shape_.addChildShape(btTransform::getIdentity(), hulls_.back().get());
     }
@@ -37,7 +39,8 @@ class Bullet final : public Peer {
     pin_ = std::make_unique<btRigidBody>(1, nullptr, &pin_shape_, of(coupling_.inertia()));
     for (btRigidBody* body : {block_.get(), pin_.get()}) body->setFriction(0), world_.addRigidBody(body);
     pin_->setActivationState(DISABLE_DEACTIVATION);
-    place(start);
+    const Quaterniond& q = start.rotation;
+    pin_->setWorldTransform(btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), of(start.position)));
   }
   ~Bullet() override {
     for (btRigidBody* body : {block_.get(), pin_.get()}) world_.removeRigidBody(body);
@@ -57,20 +60,6 @@ class Bullet final : public Peer {
     pin_->clearForces();
     return w.force;
   }
-  void place(const Pose& X) override {
-    const Quaterniond& q = X.rotation;
-    pin_->setWorldTransform(btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), of(X.position)));
-  }
-  double query() override {
-    world_.performDiscreteCollisionDetection();
-    double nearest = 1;
-    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
-      const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);
-      for (int k = 0; k < manifold.getNumContacts(); ++k)
-        nearest = std::min(nearest, static_cast<double>(manifold.getContactPoint(k).getDistance()));
-    }
-    return -nearest;
-  }
 
  private:
   static btVector3 of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -89,21 +78,30 @@ class Bullet final : public Peer {
 
 }  // namespace
 
-std::vector<Setting> settings_of_bullet() {
-  std::vector<Setting> settings;
-  for (const double margin : {0.0, 0.1, 0.01})
+Engine peer_bullet() {
+  const int version = btGetVersion();  // 324: 3.24
+  Engine engine{.name = "Bullet",
+                .version = fmt::format("{}.{}", version / 100, version % 100),
+                .package = "libbullet-dev",
+                .pushes = {},
+                .finds = bullet_finds()};
+  struct Margin {
+    std::string text;
+    double of_clearance, drawn_in;
+  };
+  for (const Margin& margin : {Margin{"default margins", 0, 0}, Margin{"margins 0.1 of the clearance", 0.1, 0},
+                               Margin{"margins 0.01 of the clearance", 0.01, 0},
+                               Margin{"margins 1 mm, drawn in", 0, 1e-3}, Margin{"margins 0.1 mm, drawn in", 0, 1e-4}})
     for (const int iterations : {10, 200})
       for (const double erp : {0.2, 0.8}) {
-        const BulletOptions options{margin, iterations, erp};
-        settings.push_back(
-            {.engine = "Bullet",
-             .text = fmt::format("margins {}, {} iterations, erp2 {}",
-                                 margin > 0 ? fmt::format("{} of the clearance", margin) : "default", iterations, erp),
-             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Peer> {
+        const BulletOptions options{margin.of_clearance, margin.drawn_in, iterations, erp};
+        engine.pushes.push_back(
+            {.text = fmt::format("{}, {} iterations, erp2 {}", margin.text, iterations, erp),
+             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
                return std::make_unique<Bullet>(task, options, start);
              }});
       }
-  return settings;
+  return engine;
 }
 
 }  // namespace verisim::peers

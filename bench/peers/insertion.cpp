@@ -24,19 +24,25 @@ double line_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& s, 
 
 }  // namespace
 
-std::vector<Vector3d> wedge(int sector, double chamfer) {
+std::vector<Vector3d> wedge(int sector, const Cut& cut) {
+  const double half = kBlockHeight / 2 - cut.drawn_in, hole = kHoleRadius + cut.drawn_in;
+  const double corner = 1 / std::cos(pinned::kPi / cut.wedges);
+  // The cone's line keeps its distance from where it was: it meets the others a little elsewhere.
+  const double shift = (std::sqrt(2.0) - 1) * cut.drawn_in;
   std::vector<Vector3d> vertices;
   for (const int k : {sector, sector + 1}) {
-    const double angle = 2 * pinned::kPi * k / kWedges;
-    const Vector3d d(std::cos(angle), std::sin(angle), 0);
-    const double corner = 1 / std::cos(pinned::kPi / kWedges);
-    const double half = kBlockHeight / 2;
-    const Vector3d outer = kBlockHalf / d.cwiseAbs().maxCoeff() * d;
-    vertices.push_back(kHoleRadius * corner * d - half * Vector3d::UnitZ());
-    vertices.push_back(kHoleRadius * corner * d + (half - chamfer) * Vector3d::UnitZ());
-    if (chamfer > 0) vertices.push_back((kHoleRadius + chamfer) * corner * d + half * Vector3d::UnitZ());
-    vertices.push_back(outer - half * Vector3d::UnitZ());
-    vertices.push_back(outer + half * Vector3d::UnitZ());
+    const double angle = 2 * pinned::kPi * k / cut.wedges;
+    const Vector3d d(std::cos(angle), std::sin(angle), 0), z = Vector3d::UnitZ();
+    const Vector3d outer = (kBlockHalf - cut.drawn_in) / d.cwiseAbs().maxCoeff() * d;
+    vertices.push_back(hole * corner * d - half * z);
+    if (cut.chamfer > 0) {
+      vertices.push_back(hole * corner * d + (kBlockHeight / 2 - cut.chamfer - shift) * z);
+      vertices.push_back((kHoleRadius + cut.chamfer + shift) * corner * d + half * z);
+    } else {
+      vertices.push_back(hole * corner * d + half * z);
+    }
+    vertices.push_back(outer + half * z);
+    vertices.push_back(outer - half * z);
   }
   return vertices;
 }
@@ -96,17 +102,17 @@ void add_band(Mesh& mesh, int a, int b, int n) {
   }
 }
 
-void add_ring(Mesh& mesh, double radius, double z) {
-  for (int i = 0; i < kWedges; ++i) {
-    const double angle = 2 * pinned::kPi * i / kWedges;
+void add_ring(Mesh& mesh, double radius, double z, int sides) {
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * pinned::kPi * i / sides;
     mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
   }
 }
 
 /// The outer square, in as many points as the hole has.
-void add_square(Mesh& mesh, double z) {
-  for (int i = 0; i < kWedges; ++i) {
-    const double angle = 2 * pinned::kPi * i / kWedges;
+void add_square(Mesh& mesh, double z, int sides) {
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * pinned::kPi * i / sides;
     const Vector3d d(std::cos(angle), std::sin(angle), 0);
     mesh.vertices.push_back(kBlockHalf / d.cwiseAbs().maxCoeff() * d + Vector3d(0, 0, z));
   }
@@ -114,17 +120,51 @@ void add_square(Mesh& mesh, double z) {
 
 }  // namespace
 
-Mesh block_mesh(double chamfer) {
-  const double corner = 1 / std::cos(pinned::kPi / kWedges), half = kBlockHeight / 2;
+Mesh block_mesh(double chamfer, int sides) {
+  const double corner = 1 / std::cos(pinned::kPi / sides), half = kBlockHeight / 2;
   Mesh mesh;
-  add_square(mesh, half);
-  if (chamfer > 0) add_ring(mesh, (kHoleRadius + chamfer) * corner, half);
-  add_ring(mesh, kHoleRadius * corner, half - chamfer);
-  add_ring(mesh, kHoleRadius * corner, -half);
-  add_square(mesh, -half);
-  const int rings = static_cast<int>(mesh.vertices.size()) / kWedges;
-  for (int i = 0; i < rings; ++i) add_band(mesh, ((i + 1) % rings) * kWedges, i * kWedges, kWedges);
+  add_square(mesh, half, sides);
+  if (chamfer > 0) add_ring(mesh, (kHoleRadius + chamfer) * corner, half, sides);
+  add_ring(mesh, kHoleRadius * corner, half - chamfer, sides);
+  add_ring(mesh, kHoleRadius * corner, -half, sides);
+  add_square(mesh, -half, sides);
+  const int rings = static_cast<int>(mesh.vertices.size()) / sides;
+  for (int i = 0; i < rings; ++i) add_band(mesh, ((i + 1) % rings) * sides, i * sides, sides);
   return mesh;
+}
+
+Vector3d force_at_rest(const Insertion& task) {
+  constexpr double kStiffness = 5000, kAngular = 50;
+  const Hand hand = hand_at(task, exact::test::steps_of(task) * kStep);
+  const Vector3d axis = hand.rotation * Vector3d::UnitZ();
+  const Vector3d beside = Vector3d(axis.x(), axis.y(), 0).normalized();  // the plane: beside and z
+  const double tilt_hand = std::atan2(axis.dot(beside), axis.z()), radius = kHoleRadius - task.clearance;
+  const double x = hand.position.dot(beside), z = hand.position.z();
+  const double top = kBlockHeight / 2 - task.chamfer, bottom = kBlockHeight / 2;
+  const auto room = [&](double a, double height) { return kHoleRadius * std::cos(a) - height * std::sin(a) - radius; };
+  const auto pushed = [&](double a) {  // how far the bounds push the pin along n
+    const double w = std::cos(a) * x - std::sin(a) * z;
+    return std::clamp(w, -room(a, bottom), room(a, top)) - w;
+  };
+  const auto energy = [&](double a) {
+    const double off = pushed(a), turned = tilt_hand - a;
+    return 0.5 * kStiffness * off * off + 0.5 * kAngular * turned * turned;
+  };
+  // The largest tilt that the hole has room for, by bisection: room on both sides together shrinks as it grows.
+  double low = 0, high = tilt_hand;
+  const auto fits = [&](double a) { return room(a, top) + room(a, bottom) >= 0; };
+  for (int i = 0; i < 100 && !fits(tilt_hand); ++i) (fits(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+  high = fits(tilt_hand) ? tilt_hand : low;
+  low = 0;
+  for (int i = 0; i < 200; ++i) {  // golden section: the energy has one minimum there
+    const double part = 0.3819660112501051 * (high - low);
+    if (energy(low + part) < energy(high - part))
+      high -= part;
+    else
+      low += part;
+  }
+  const double a = 0.5 * (low + high);
+  return kStiffness * pushed(a) * (std::cos(a) * beside - std::sin(a) * Vector3d::UnitZ());
 }
 
 Vector3d Coupling::inertia() const {

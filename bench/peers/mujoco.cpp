@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 
 #include "bench/peers/peer.hpp"
@@ -12,13 +13,18 @@
 namespace verisim::peers {
 namespace {
 
-/// Contact parameters; whether the friction cone is elliptic and convex shapes may touch at several points.
+/// Contact parameters; whether the friction cone is elliptic, whether convex shapes may touch at several points, and
+/// how far off contacts are told.
 struct MuJoCoOptions {
   std::string contact;
-  bool elliptic = false;
+  bool elliptic = false, several = false;
+  double margin = 0;        ///< m; it pushes from there, so an insertion has none: it would close the hole
+  double tolerance = 1e-6;  ///< of the search for the deepest point (mpr_tolerance)
+  int wedges = kWedges;
+  int rows = 8000;  ///< of the contact problem, whose matrix is reserved: 512 MB
 };
 
-class MuJoCo final : public Peer {
+class MuJoCo final : public Pusher, public Finder {
  public:
   MuJoCo(const Insertion& task, const MuJoCoOptions& options, const Pose& start)
       : coupling_{kHoleRadius - task.clearance} {
@@ -36,6 +42,7 @@ class MuJoCo final : public Peer {
   }
   [[nodiscard]] Motion motion() const override {
     const double *q = data_->qpos, *v = data_->qvel;
+    if (blown_up_) return {{Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()), Quaterniond::Identity()}};
     Motion m{{{q[0], q[1], q[2]}, Quaterniond(q[3], q[4], q[5], q[6])}};
     m.v = {v[0], v[1], v[2]};
     m.omega = m.X_WB.rotation * Vector3d(v[3], v[4], v[5]);
@@ -46,6 +53,9 @@ class MuJoCo final : public Peer {
     double* applied = data_->xfrc_applied + 6;  // of the first body after the world
     for (int i = 0; i < 3; ++i) applied[i] = w.force[i], applied[3 + i] = w.torque[i];
     mj_step(model_.get(), data_.get());
+    // It begins again where the model has the pin: within the hole, as if it had come through.
+    for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
+      blown_up_ = blown_up_ || data_->warning[warning].number > 0;
     return w.force;
   }
   void place(const Pose& X) override {
@@ -56,7 +66,7 @@ class MuJoCo final : public Peer {
   }
   double query() override {
     mj_collision(model_.get(), data_.get());
-    double nearest = 1;
+    double nearest = -kNothing;
     for (int i = 0; i < data_->ncon; ++i) nearest = std::min(nearest, data_->contact[i].dist);
     return -nearest;
   }
@@ -64,43 +74,59 @@ class MuJoCo final : public Peer {
  private:
   [[nodiscard]] std::string scene(const Insertion& task, const MuJoCoOptions& options) const {
     std::string meshes, geoms;
-    for (int i = 0; i < kWedges; ++i) {
+    for (int i = 0; i < options.wedges; ++i) {
       std::string vertices;
-      for (const Vector3d& p : wedge(i, task.chamfer))
+      for (const Vector3d& p : wedge(i, {.chamfer = task.chamfer, .wedges = options.wedges}))
         vertices += fmt::format("{:.17g} {:.17g} {:.17g} ", p.x(), p.y(), p.z());
       meshes += fmt::format("<mesh name='w{}' vertex='{}'/>", i, vertices);
       geoms += fmt::format("<geom type='mesh' mesh='w{}' contype='1' conaffinity='2'/>", i);
     }
     const Vector3d I = coupling_.inertia();
     return fmt::format(
-        "<mujoco><size nconmax='2000' njmax='8000'/><option timestep='{}' gravity='0 0 0' cone='{}' iterations='200' "
-        "tolerance='1e-12'><flag multiccd='{}'/></option><default><geom condim='1' margin='0.0005' "
-        "gap='0' {}/></default>"
+        "<mujoco><size nconmax='2000' njmax='{}'/><option timestep='{}' gravity='0 0 0' cone='{}' iterations='200' "
+        "tolerance='1e-12' mpr_tolerance='{}' mpr_iterations='200'><flag multiccd='{}'/></option>"
+        "<default><geom condim='1' margin='{}' gap='0' {}/></default>"
         "<asset>{}</asset><worldbody><body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='{} {} {}'/>"
         "<geom type='cylinder' size='{:.17g} {:.17g}' contype='2' conaffinity='1'/></body>{}</worldbody></mujoco>",
-        kStep, options.elliptic ? "elliptic" : "pyramidal", options.elliptic ? "enable" : "disable", options.contact,
-        meshes, I.x(), I.y(), I.z(), coupling_.radius, kPinLength / 2, geoms);
+        options.rows, kStep, options.elliptic ? "elliptic" : "pyramidal", options.tolerance,
+        options.several ? "enable" : "disable", options.margin, options.contact, meshes, I.x(), I.y(), I.z(),
+        coupling_.radius, kPinLength / 2, geoms);
   }
   Coupling coupling_;
+  bool blown_up_ = false;
   std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model_{nullptr, &mj_deleteModel};
   std::unique_ptr<mjData, decltype(&mj_deleteData)> data_{nullptr, &mj_deleteData};
 };
 
 }  // namespace
 
-std::vector<Setting> settings_of_mujoco() {
-  std::vector<Setting> settings;
+Engine peer_mujoco() {
+  Engine engine{.name = "MuJoCo", .version = mj_versionString(), .package = "libmujoco-dev"};
   for (const char* time_constant : {"0.02", "0.004", "0.002"})  // 2 steps are the least that it takes
     for (const char* impedance : {"0.9 0.95 0.001", "0.95 0.99 0.001", "0.99 0.9999 0.001"})
       for (const bool elliptic : {false, true}) {
-        const MuJoCoOptions options{fmt::format("solref='{} 1' solimp='{}'", time_constant, impedance), elliptic};
-        settings.push_back({.engine = "MuJoCo",
-                            .text = options.contact + (elliptic ? " elliptic multiccd" : " pyramidal"),
-                            .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Peer> {
-                              return std::make_unique<MuJoCo>(task, options, start);
-                            }});
+        const MuJoCoOptions options{.contact = fmt::format("solref='{} 1' solimp='{}'", time_constant, impedance),
+                                    .elliptic = elliptic,
+                                    .several = elliptic};
+        engine.pushes.push_back(
+            {.text = options.contact + (elliptic ? " elliptic multiccd" : " pyramidal"),
+             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
+               return std::make_unique<MuJoCo>(task, options, start);
+             }});
       }
-  return settings;
+  for (const int wedges : {64, 256})
+    for (const double margin : {0.0, 0.0005, 0.005})
+      for (const bool several : {false, true})
+        for (const double tolerance : {1e-6, 1e-9}) {
+          const MuJoCoOptions options{
+              .contact = "", .several = several, .margin = margin, .tolerance = tolerance, .wedges = wedges, .rows = 1};
+          engine.finds.push_back({.text = fmt::format("{} wedges, margin {:g} mm, mpr_tolerance {:g}{}", wedges,
+                                                      1e3 * margin, tolerance, several ? ", multiccd" : ""),
+                                  .make = [options](double clearance) -> std::unique_ptr<Finder> {
+                                    return std::make_unique<MuJoCo>(Insertion{.clearance = clearance}, options, Pose());
+                                  }});
+        }
+  return engine;
 }
 
 }  // namespace verisim::peers

@@ -17,11 +17,12 @@ struct OdeOptions {
   bool boxes = false;
   double erp = 0.2;
   int iterations = 0;  ///< of dWorldQuickStep; 0: dWorldStep
+  int sides = kWedges;
 };
 
 constexpr int kContactsOfAPair = 64;
 
-class Ode final : public Peer {
+class Ode final : public Pusher, public Finder {
  public:
   Ode(const Insertion& task, const OdeOptions& options, const Pose& start)
       : coupling_{kHoleRadius - task.clearance}, options_(options) {
@@ -82,7 +83,7 @@ class Ode final : public Peer {
   double query() override {
     contacts_.clear();
     dSpaceCollide(space_, this, &Ode::collide);
-    double deepest = -1;
+    double deepest = kNothing;
     for (const dContactGeom& contact : contacts_) deepest = std::max(deepest, static_cast<double>(contact.depth));
     return deepest;
   }
@@ -96,7 +97,7 @@ class Ode final : public Peer {
     ode.contacts_.insert(ode.contacts_.end(), found.begin(), found.begin() + n);
   }
   void add_mesh(double chamfer) {
-    const Mesh mesh = block_mesh(chamfer);
+    const Mesh mesh = block_mesh(chamfer, options_.sides);
     for (const Vector3d& v : mesh.vertices) vertices_.insert(vertices_.end(), {v.x(), v.y(), v.z()});
     for (const auto& [a, b, c] : mesh.triangles)
       for (const int i : {a, b, c}) triangles_.push_back(static_cast<dTriIndex>(i));
@@ -117,8 +118,9 @@ class Ode final : public Peer {
   }
   void add_boxes(double chamfer) {
     constexpr double kThick = 0.05;
-    for (int i = 0; i < kWedges; ++i) {
-      const double angle = 2 * pinned::kPi * (i + 0.5) / kWedges, side = 2 * std::tan(pinned::kPi / kWedges);
+    const int sides = options_.sides;
+    for (int i = 0; i < sides; ++i) {
+      const double angle = 2 * pinned::kPi * (i + 0.5) / sides, side = 2 * std::tan(pinned::kPi / sides);
       add_box(angle, 0, {kHoleRadius, 0, -chamfer / 2}, {kThick, side * kHoleRadius, kBlockHeight - chamfer});
       if (chamfer <= 0) continue;
       const double outer = kHoleRadius + chamfer, middle = kHoleRadius + chamfer / 2;
@@ -142,21 +144,28 @@ class Ode final : public Peer {
 
 }  // namespace
 
-std::vector<Setting> settings_of_ode() {
-  std::vector<Setting> settings;
+Engine peer_ode() {
+  Engine engine{.name = "ODE", .version = VERISIM_ODE_VERSION, .package = "libode-dev"};
   for (const bool boxes : {true, false})
     for (const int iterations : {0, 20, 200})
       for (const double erp : {0.2, 0.8}) {
         const OdeOptions options{boxes, erp, iterations};
-        settings.push_back(
-            {.engine = "ODE",
-             .text = fmt::format("{}, {}, ERP {}", boxes ? "boxes" : "mesh",
+        engine.pushes.push_back(
+            {.text = fmt::format("{}, {}, ERP {}", boxes ? "boxes" : "mesh",
                                  iterations > 0 ? fmt::format("QuickStep of {}", iterations) : "Step", erp),
-             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Peer> {
+             .make = [options](const Insertion& task, const Pose& start) -> std::unique_ptr<Pusher> {
                return std::make_unique<Ode>(task, options, start);
              }});
       }
-  return settings;
+  for (const bool boxes : {true, false})
+    for (const int sides : {64, 256}) {
+      const OdeOptions options{.boxes = boxes, .sides = sides};
+      engine.finds.push_back({.text = boxes ? fmt::format("{} boxes", sides) : fmt::format("mesh of {} sides", sides),
+                              .make = [options](double clearance) -> std::unique_ptr<Finder> {
+                                return std::make_unique<Ode>(Insertion{.clearance = clearance}, options, Pose());
+                              }});
+    }
+  return engine;
 }
 
 }  // namespace verisim::peers

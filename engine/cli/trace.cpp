@@ -173,7 +173,7 @@ void add_synth(CLI::App& trace, int& exit_code) {
   add_seed_option(
       *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of its random streams (0 to 2^64 - 1)");
   command->footer(
-      "Examples: verisim trace synth insertion -o insert.csv --set depth=0.3\n"
+      "Example: verisim trace synth insertion -o insert.csv --set depth=0.3\n"
       "          verisim trace synth encoder --path square -o square.csv --set length=2");
   command->callback([=, &exit_code] {
     std::map<std::string, double> parameters;

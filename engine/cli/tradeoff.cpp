@@ -10,16 +10,20 @@
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/streams.hpp"
+#include "engine/cli/tradeoff_peers.hpp"
 #include "engine/cli/tradeoff_sweep.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/session/json_text.hpp"
+#include "engine/session/origin.hpp"
 #include "engine/tradeoff/bounds.hpp"
+#include "engine/tradeoff/peers.hpp"
 
 namespace verisim::cli {
 namespace {
 
 using nlohmann::ordered_json;
+using tradeoff::Kind;
 using tradeoff::Table;
 
 struct TradeoffOptions {
@@ -27,6 +31,7 @@ struct TradeoffOptions {
   std::string by, budget, error, simd;
   OutOptions out;
   bool json = false;
+  bool peers = false, quick = false;
 };
 
 /// What is asked of the table. Read before anything is computed.
@@ -71,7 +76,7 @@ void write(const Places& places, const Table& table) {
   write_text(places.plot, plot_of(table), true);
 }
 
-void print_table(const Table& table) {
+void print_settings(const Table& table) {
   std::printf("truth: %s\n", shown(table.truth).c_str());
   if (!table.convergence.empty()) std::printf("  %s\n", table.convergence.c_str());
   for (const std::string& note : table.notes) std::printf("note: %s\n", shown(note).c_str());
@@ -80,6 +85,15 @@ void print_table(const Table& table) {
   for (const std::size_t i : front_of(table.rows, table.by)) front += fmt::format("{}{}", front.empty() ? "" : ", ", i);
   std::printf("front by '%s' (%s): %s\n", tradeoff::kKinds[index_of(table.by)].name,
               tradeoff::kKinds[index_of(table.by)].meaning, front.empty() ? "no setting has it" : front.c_str());
+}
+
+/// The settings, if there is a scenario, then the other engines, if they were asked.
+void print_table(const Table& table) {
+  if (!table.scenario.empty()) print_settings(table);
+  if (table.peers_json.empty()) return;
+  if (table.scenario.empty())
+    for (const std::string& note : table.notes) std::printf("note: %s\n", shown(note).c_str());
+  std::printf("%s", tradeoff::text_of_peers(ordered_json::parse(table.peers_json)).c_str());
 }
 
 /// 1 and a line on stderr if no setting keeps the bounds.
@@ -103,12 +117,43 @@ int tell(const Table& table, const Question& question, bool as_json) {
   return static_cast<int>(ErrorKind::check_failed);
 }
 
+/// Without a scenario there is nothing to vary and nothing to choose from.
+void check_scenario(const TradeoffOptions& o) {
+  if (!o.sweep.scenario.empty()) return;
+  if (!o.peers) fail(ErrorKind::usage, "SCENARIO is required, but with --peers; see verisim tradeoff --help");
+  const SweepRequest& s = o.sweep;
+  for (const bool asked : {!s.vary.empty(), !s.truth.empty(), !s.sets.empty(), !s.binds.empty(), s.duration.has_value(),
+                           !o.budget.empty(), !o.error.empty(), !o.by.empty()})
+    if (asked)
+      fail(ErrorKind::usage,
+           "--vary, --truth, --set, --bind, --duration, --budget, --error and --by are of a SCENARIO; "
+           "name it, or leave them out");
+}
+
+Table table_without_scenario(Kind by) {
+  Table table;
+  table.version = VERISIM_VERSION;
+  table.commit = commit();
+  table.cpu = cpu_model();
+  table.compiler = compiler();
+  table.by = by;
+  return table;
+}
+
 int run_tradeoff(const TradeoffOptions& o) {
   use_simd_target(o.simd);
+  check_scenario(o);
   const Question question = question_of(o);
-  Sweep sweep(o.sweep);
+  const std::string peers = o.peers ? peers_program() : "";
+  std::optional<Sweep> sweep;
+  if (!o.sweep.scenario.empty()) sweep.emplace(o.sweep);
   const Places places = places_in(o.out.path, o.out.force);
-  const Table table = sweep.table(question.by);
+  Table table = sweep ? sweep->table(question.by) : table_without_scenario(question.by);
+  if (o.peers) {
+    const PeersFound found = ask_peers(peers, o.quick, o.sweep.quiet);
+    table.peers_json = found.peers.dump();
+    if (!found.note.empty()) table.notes.push_back(found.note);
+  }
   write(places, table);
   return tell(table, question, o.json);
 }
@@ -150,7 +195,7 @@ void add_tradeoff(CLI::App& app, int& exit_code) {
   auto* command =
       app.add_subcommand("tradeoff", "The speed-accuracy trade of a scenario: table, Pareto front, setting to use");
   auto o = std::make_shared<TradeoffOptions>();
-  command->add_option("SCENARIO", o->sweep.scenario, "Lua script that describes the scene")->required();
+  command->add_option("SCENARIO", o->sweep.scenario, "Lua script that describes the scene; not needed for --peers");
   add_sweep_options(*command, o->sweep);
   command->add_option("--budget", o->budget, "200us: the most accurate setting whose median frame keeps that");
   command->add_option("--error", o->error, "0.05N, 0.01mm, 5%: the cheapest setting whose error keeps that");
@@ -158,6 +203,10 @@ void add_tradeoff(CLI::App& app, int& exit_code) {
                       "Error of the front and of --error: wrench, force, force_max, torque, torque_max, position, "
                       "rotation, overlap, work, flips (default: force, or what the unit of --error says)");
   command->add_option("--simd", o->simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
+  auto* peers = command->add_flag("--peers", o->peers,
+                                  "MuJoCo, Bullet, ODE and FCL, each at its best of a search, beside this project's "
+                                  "methods: the same poses, the same driven insertions (needs verisim-peers)");
+  command->add_flag("--quick", o->quick, "Of --peers: one of six insertions, two settings of every grid")->needs(peers);
   add_out_options(*command, o->out, "Folder for tradeoff.json, tradeoff.csv and tradeoff.svg");
   command->add_flag("--json", o->json, "One JSON object on stdout");
   command->footer(

@@ -8,17 +8,18 @@
 #include "engine/base/moving_base.hpp"
 #include "engine/robot/robot.hpp"
 #include "engine/script/companion_node.hpp"
+#include "engine/script/head_node.hpp"
 #include "engine/script/values.hpp"
 
 namespace verisim::script {
 
 struct RobotNode : CompanionNode {
   robot::RobotSettings settings;
-  std::string board = "host";           ///< "host" or "avr"
-  std::string server = "Robot";         ///< by which VRPNRemoteBase names it
-  std::string tracker;                  ///< by which TrackedTransform names its tracker
-  std::string trace;                    ///< an encoder trace that it follows instead; empty: none
-  std::shared_ptr<CompanionNode> head;  ///< whose line of sight it keeps out of; null: none
+  std::string board = "host";    ///< "host" or "avr"
+  std::string server = "Robot";  ///< by which VRPNRemoteBase names it
+  std::string tracker;           ///< by which TrackedTransform names its tracker
+  std::string trace;             ///< an encoder trace that it follows instead; empty: none
+  HeadPointer head;              ///< whose line of sight it keeps out of; null: none
 
   std::shared_ptr<robot::Robot> robot;   ///< null until made, and if a trace moves it
   std::shared_ptr<MovingBase> base;      ///< null until made

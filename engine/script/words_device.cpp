@@ -263,8 +263,8 @@ int device_member(lua_State* L) {
 /// Of what drives a base, the gain; of all else nothing.
 int set_device_member(lua_State* L) {
   const DevicePointer node = device_at(L, 1, "a device");
-  const std::string name = text_at(L, 2, "a device's member");
-  if (!node->gain || name != "gain") return refuse_assignment(L);
+  const bool has_name = lua_type(L, 2) == LUA_TSTRING;
+  if (!has_name || !node->gain || text_at(L, 2, "a device's member") != "gain") return refuse_assignment(L);
   *node->gain = number_at(L, 3, "a device's gain");
   return 0;
 }

@@ -19,6 +19,7 @@ constexpr const char* kRemoteBase = "VRPNRemoteBase";
 /// Published gains are in the wire's units: mm/s for each m of error.
 constexpr double kGainUnit = 1000;
 /// m: more than the tracker is off, and than who pulls at the device with 20 N makes the wheels slip.
+constexpr double kSightClearance = 0.35;  ///< rad: the Virtuose, 0.4 m wide, at an arm's length from the eyes
 constexpr double kMarginOfPull = 0.03;
 
 robot::EncoderSamples read_encoder_samples(Inputs& inputs, const std::string& name) {
@@ -35,6 +36,13 @@ robot::EncoderSamples read_encoder_samples(Inputs& inputs, const std::string& na
   return samples;
 }
 
+/// F; empty until the tracker knows the head.
+std::optional<std::array<double, 2>> seen_from_above(const HeadNode& node) {
+  if (node.head == nullptr || !node.head->estimate().valid) return std::nullopt;
+  const Vector3d p = node.head->world_pose().position;
+  return std::array{p.x(), -p.z()};
+}
+
 }  // namespace
 
 std::shared_ptr<MovingBase> RobotNode::base_of(Inputs& inputs, std::uint64_t seed) {
@@ -45,6 +53,7 @@ std::shared_ptr<MovingBase> RobotNode::base_of(Inputs& inputs, std::uint64_t see
     robot = std::make_shared<robot::Robot>(settings, robot::make_board(board));
     companion = robot;
     base = robot;
+    if (head) robot->watch([node = head] { return seen_from_above(*node); });
   } else {
     const auto recorded = std::make_shared<robot::RecordedBase>(settings, read_encoder_samples(inputs, trace));
     companion = recorded;
@@ -115,6 +124,11 @@ void read_walls(lua_State* L, Fields& fields, RobotNode& node) {
 void read_head(lua_State* L, Fields& fields, RobotNode& node) {
   robot::HeadingSettings& heading = node.settings.pilot.drive.heading;
   if (!fields.boolean("holdHeading").value_or(true)) heading.p = 0;
+  if (fields.push("head")) {
+    node.head = get<HeadPointer>(L, lua_gettop(L), fields.name_of("head"));
+    lua_pop(L, 1);
+    heading.clearance = kSightClearance;
+  }
   heading.clearance = at_most(L, fields, "sightClearance", heading.clearance, pinned::kPi / 2);
 }
 

@@ -1,40 +1,27 @@
 // WiiHead: a head that a Wii Remote watches beside the loop.
 #include <algorithm>
 
+#include "engine/script/head_node.hpp"
 #include "engine/script/script_state.hpp"
 #include "engine/script/values.hpp"
 #include "engine/script/wii_recording.hpp"
-#include "engine/wii/head.hpp"
 
 namespace verisim::script {
 
-/// A WiiHead as described.
-struct HeadNode : CompanionNode {
-  std::string tracker = "scaat";
-  std::string trace;                         ///< a wii trace; empty: virtual_remote
-  TraceLimits limits;                        ///< of the trace
-  wii::VirtualSourceOptions virtual_remote;  ///< name and seed are filled in by make
-  Pose X_WL;                                 ///< where the remote stands, levelled
-  std::shared_ptr<wii::Head> head;           ///< null until make
-
-  void bind(const std::string& source) override { trace = source; }
-  [[nodiscard]] std::shared_ptr<Companion> make(Inputs& inputs, std::uint64_t seed) override {
-    std::unique_ptr<wii::ReportSource> source;
-    if (trace.empty()) {
-      virtual_remote.name = name;
-      virtual_remote.seed = seed;
-      source = wii::make_virtual_source(virtual_remote);
-    } else {
-      source = wii::make_recorded_source(read_wii_recording(inputs, trace, limits));
-    }
-    head = std::make_shared<wii::Head>(name, std::move(source), tracker, X_WL);
-    return head;
+std::shared_ptr<Companion> HeadNode::make(Inputs& inputs, std::uint64_t seed) {
+  std::unique_ptr<wii::ReportSource> source;
+  if (trace.empty()) {
+    virtual_remote.name = name;
+    virtual_remote.seed = seed;
+    source = wii::make_virtual_source(virtual_remote);
+  } else {
+    source = wii::make_recorded_source(read_wii_recording(inputs, trace, limits));
   }
-};
+  head = std::make_shared<wii::Head>(name, std::move(source), tracker, X_WL);
+  return head;
+}
 
 namespace {
-
-using HeadPointer = std::shared_ptr<HeadNode>;
 
 wii::LedLayout leds_at(lua_State* L, int index) {
   const std::string what = "WiiHead: leds";

@@ -74,6 +74,7 @@ struct Table {
   Kind by = Kind::force;                                ///< the error of the front
   std::vector<std::string> notes;
   std::vector<Row> rows;
+  std::string peers_json;  ///< what other engines did (peers.hpp); empty: they were not asked; not read back
 };
 
 /// Fills `dominated` of all rows, by load and by one kind of error (its greatest). Failed rows and rows without that

@@ -132,6 +132,7 @@ ordered_json json_of(const Table& table) {
                        {"rows", ordered_json::array()}};
   for (const Row& row : table.rows) json["rows"].push_back(json_of(row));
   json["front"] = front_of(table.rows, table.by);
+  if (!table.peers_json.empty()) json["peers"] = ordered_json::parse(table.peers_json);
   return json;
 }
 

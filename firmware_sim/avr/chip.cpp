@@ -218,6 +218,7 @@ void Chip::advance(std::span<const EncoderEdge> edges, std::span<const TimedByte
   begin_ += kCyclesPerMs;
   state_.load.cycles += kCyclesPerMs;
   state_.load.busy_cycles += kCyclesPerMs - (slept_ - slept_before_);
+  awake_ms_ = slept_ == slept_before_ ? awake_ms_ + 1 : 0;
   slept_before_ = slept_;
   read_outputs();
   read_losses();
@@ -236,14 +237,13 @@ void Chip::read_outputs() {
 }
 
 /// Compares what came with what the firmware has counted, whenever no edge is on its way to it. A processor that is in
-/// interrupts all the time always has some on their way: after 5 ms of that they count as lost.
+/// interrupts all the time always has some on their way: after 5 ms without sleep they count as lost.
 void Chip::read_losses() {
   const std::uint16_t bytes_lost = word_at(bytes_lost_);
   state_.load.bytes_lost += static_cast<std::uint16_t>(bytes_lost - bytes_lost_seen_);
   bytes_lost_seen_ = bytes_lost;
   const bool has_pending = (avr_->data[kPcifr] & 3) != 0 || !avr_->sreg[S_I];
-  pending_ms_ = has_pending ? pending_ms_ + 1 : 0;
-  if (has_pending && pending_ms_ < 5) return;
+  if (has_pending && awake_ms_ < 5) return;
   std::uint64_t lost = edges_lost_before_;
   for (std::size_t wheel = 0; wheel < 4; ++wheel) {
     const std::uint16_t counted = word_at(encoders_ + static_cast<std::uint32_t>(wheel * sizeof(Encoder)));

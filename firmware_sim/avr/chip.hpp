@@ -67,7 +67,7 @@ class Chip {
   std::array<std::uint8_t, 4> levels_{};
   std::array<std::uint16_t, 4> expected_{};  ///< what the encoders' counts should be
   std::uint64_t edges_lost_before_ = 0;      ///< before the last boot
-  std::uint32_t pending_ms_ = 0;             ///< so long edges were on their way at the end of each
+  std::uint32_t awake_ms_ = 0;               ///< milliseconds since it slept last
   std::uint16_t bytes_lost_seen_ = 0;
 
   std::deque<Leaving> leaving_;
