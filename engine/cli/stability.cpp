@@ -31,24 +31,10 @@ using stability::RowKind;
 using stability::Task;
 
 /// The scenarios that are shipped, but for what others require.
-constexpr std::array kShipped = {"assembly",
-                                 "bubble_stickiness",
-                                 "declared",
-                                 "everything",
-                                 "head_tracking",
-                                 "iso_fit",
-                                 "peg_in_hole",
-                                 "peg_in_hole_step",
-                                 "pins",
-                                 "reach",
-                                 "robot_gain",
-                                 "robot_restart",
-                                 "robot_walk",
-                                 "robot_wall",
-                                 "seats",
-                                 "slide",
-                                 "stack",
-                                 "tray"};
+constexpr std::array kShipped = {
+    "assembly",    "bubble_stickiness", "declared", "everything", "head_tracking", "iso_fit",
+    "peg_in_hole", "peg_in_hole_step",  "pins",     "reach",      "robot_gain",    "robot_restart",
+    "robot_walk",  "robot_wall",        "seats",    "slide",      "stack",         "tray"};
 constexpr double kShort = 2;  // s, of a shipped scenario unless all is asked for
 
 struct StabilityOptions {

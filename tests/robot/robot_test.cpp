@@ -1,5 +1,5 @@
-// The robot as a whole, with the host board: it follows its handle, comes back to its heading after a powerful collision,
-// does not depend on how frames divide its milliseconds, and allocates nothing.
+// The robot as a whole, with the host board: it follows its handle, comes back to its heading after a powerful
+// collision, does not depend on how frames divide its milliseconds, and allocates nothing.
 #include "engine/robot/robot.hpp"
 
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ RobotSettings quiet_tracker() {
   return settings;
 }
 
-// The proportional law leaves no error where the hand stands; what is left are the gears' backlash (1 degree of 50 mm is
-// 0.9 mm), duties that do nothing (29 of 255) over the gain, and the wheels' last counts.
+// The proportional law leaves no error where the hand stands; what is left are the gears' backlash (1 degree of 50 mm
+// is 0.9 mm), duties that do nothing (29 of 255) over the gain, and the wheels' last counts.
 TEST(Robot, GoesWhereItsHandleIs) {
   for (const auto& [x, z] : {std::pair{0.3, 0.0}, std::pair{-0.2, 0.25}, std::pair{0.0, -0.3}}) {
     Walker walker(quiet_tracker());
@@ -49,9 +49,10 @@ TEST(Robot, GoesWhereItsHandleIs) {
   }
 }
 
-// Section 5.5: "a powerful or extended simulated collision with the haptic device's arm extended produces a torque about
-// the axis between the mobile robot and the haptic device's base. This can result in some rotational slippage". 35 N at
-// 0.45 m, and the 3.1 N m that the Virtuose renders, five times for 0.2 s: it turns, and heading control turns it back.
+// Section 5.5: "a powerful or extended simulated collision with the haptic device's arm extended produces a torque
+// about the axis between the mobile robot and the haptic device's base. This can result in some rotational slippage".
+// 35 N at 0.45 m, and the 3.1 N m that the Virtuose renders, five times for 0.2 s: it turns, and heading control turns
+// it back.
 TEST(Robot, ComesBackToItsHeadingAfterAPowerfulCollision) {
   for (const bool holds : {true, false}) {
     RobotSettings settings = quiet_tracker();
