@@ -2,7 +2,7 @@
 -- the hybrid method. Each part can be driven by a recording and switched off:
 --   build/verisim trace synth encoder -o drive.csv --path square
 --   ./run scenarios/everything.lua --bind robot=drive.csv            the base does what these wheels did
---   ./run scenarios/everything.lua --bind head=HEAD.csv --bind omni=HAND.csv
+--   ./run scenarios/everything.lua --bind head=HEAD.csv --bind omni=HAND.csv --set operator=false
 --   ./run scenarios/everything.lua --set head=false --set robot=false --set bubble=false
 local p = params{
   head = parameter(true, "", "a head that a Wii Remote watches"),

@@ -84,6 +84,20 @@ class RobotScenes(ProgramTest):
                     self.assertEqual("state/robot" in f, part != "robot")
                     self.assertEqual("state/wii" in f, part != "head")
 
+    def test_recordings_of_base_and_hand_drive_it_together(self):
+        self.succeed("trace", "synth", "encoder", "-o", self.path("drive.csv"), "--path", "circle")
+        self.succeed("trace", "synth", "insertion", "-o", self.path("hand.csv"), "--set", "z=0.05", "--set", "depth=0.05")
+        _, _, run_file = self.scene("everything", "--set", "operator=false", "--set", "bubble=false", "--duration", "3", "--bind",
+                                    "robot=" + self.path("drive.csv"), "--bind", "omni=" + self.path("hand.csv"))
+        with h5py.File(run_file) as f:
+            base, omni = f["state/robot/robot/tracked_pose"][()], f["state/device/omni"]
+            # Where the tracker had the base after the frame before, and the recorded hand on it, times 4.
+            hand, angle = omni["raw_pose"][1:], base[:-1, 2]
+            wanted = 4 * (base[:-1, 0] + numpy.cos(angle) * hand[:, 0] + numpy.sin(angle) * hand[:, 2])
+            self.assertGreater(numpy.ptp(base[:, 0]), 0.05)
+            self.assertLess(numpy.abs(omni["handle_pose"][1:, 0] - wanted).max(), 1e-9)
+        self.succeed("replay", run_file, "--verify")
+
     def test_an_encoder_trace_moves_the_base(self):
         self.succeed("trace", "synth", "encoder", "-o", self.path("drive.csv"), "--path", "square")
         _, _, run_file = self.scene("everything", "--bind", "robot=" + self.path("drive.csv"), "--duration", "3")
