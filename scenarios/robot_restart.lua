@@ -5,9 +5,9 @@ local p = params{
   board = parameter("host", "", "of the robot: host, or avr"),
   off = parameter(2, "s", "how long each part is gone"),
 }
-defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 1, duration = 4 + 8 * (p.off + 10) + 1 }
+defineSimulationParameters{ maxStiffness = 300, maxAngularStiffness = 1, duration = 4 + 10 * (p.off + 10) + 3 }
 local y, z = 1.0, 0.55
-local person = Devices.Hand{ name = "person", loop = true, path = {{position = {0, y, z}}, {position = {0.5, y, z}, speed = 0.3}} }
+local person = Devices.Hand{ name = "person", loop = true, path = {{position = {0, y, z}, speed = 0.3}, {position = {0.5, y, z}, speed = 0.3}} }
 local robot = Robot{ name = "robot", board = p.board, gain = 10000, device = {0, y, 0}, tracker = {name = "ART"} }
 local device = Devices.Haption.Virtuose6D3545{ name = "virtuose", base = robot, operator = person, stops = true }
 device = TrackedTransform(VRPNRemoteBase(device, 0, z, "Robot@localhost"), "ART")
@@ -21,7 +21,9 @@ local faults = {
   {"board reset", function() robot:resetBoard() end, function() end},
   {"wheel blocked", function() robot:blockWheel("front left", true) end, function() robot:blockWheel("front left", false) end},
   {"encoder dead", function() robot:breakEncoder("rear right", "dead") end, function() robot:breakEncoder("rear right", "none") end},
-  {"axes swapped", function() robot:swapAxes(true) end, function() robot:swapAxes(false); robot:killServer(); robot:startServer() end},
+  {"encoder reversed", function() robot:breakEncoder("front right", "reversed") end, function() robot:breakEncoder("front right", "none") end},
+  {"brown-out", function() robot:setSupply(4) end, function() robot:setSupply(12) end},
+  {"axes swapped", function() robot:swapAxes(true) end, function() robot:swapAxes(false); robot:killServer(); robot:startServer() end, 2},
 }
 
 local function off_neutral(seconds)
@@ -38,14 +40,14 @@ Actions.addFrameAction(function()
   local followed = 0
   off_neutral(4)
   for _, fault in ipairs(faults) do
-    local name, break_it, mend_it = fault[1], fault[2], fault[3]
+    local name, break_it, mend_it, longer = fault[1], fault[2], fault[3], fault[4] or 0
     break_it()
-    measure("off neutral without: " .. name, off_neutral(p.off), "m")
+    measure("off neutral without: " .. name, off_neutral(p.off + longer), "m")
     mend_it()
     off_neutral(6)                                        -- it comes back
     local again = off_neutral(4)
     measure("off neutral after: " .. name, again, "m")
-    if again < 0.05 then followed = followed + 1 end
+    if again < 0.08 then followed = followed + 1 end
     outcome(followed .. " of " .. #faults .. " came back")
   end
   os.exit()

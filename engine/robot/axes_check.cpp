@@ -17,6 +17,7 @@ constexpr double kForget = 2.0;                            // s
 constexpr double kArm = 0.3;                               // m, Nexus: half base plus half track
 constexpr double kEnough = 0.05 * 0.05;                    // m^2
 constexpr double kTold = 0.005 * 0.005;                    // m^2 in a stride: above the tracker's noise
+constexpr double kFastest = 1.5;                           // m/s, of a base that rolls or slips
 constexpr double kFollows = 0.3, kTurnsBack = -0.5, kIdle = 0.1;
 
 std::uint64_t in_milliseconds(double lag) {
@@ -73,17 +74,19 @@ void AxesCheck::take_stride(const TrackedBase& tracked, std::uint64_t taken) {
   const double dx = tracked.pose.x - last_.x, dy = tracked.pose.y - last_.y;
   const std::array<double, 3> moved{c * dx + s * dy, -s * dx + c * dy, kArm * turn};
   const std::array<double, 3> told{to.x - from.x, to.y - from.y, kArm * (to.theta - from.theta)};
-  const double kept = pinned::exp(-static_cast<double>(taken - last_taken_) / (1000 * kForget));
   double stride_moved = 0, stride_told = 0, all_told = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     stride_moved += moved[i] * moved[i];
     stride_told += told[i] * told[i];
   }
+  const double seconds = 0.001 * static_cast<double>(taken - last_taken_);
+  const double kept = pinned::exp(-seconds / kForget);
+  const bool jumps = stride_moved > kFastest * kFastest * seconds * seconds;  // no base does: a tracker set up anew
   const bool stands = stride_told > kTold && stride_moved < kIdle * stride_told;
   idle_squares_ = kept * idle_squares_ + (stands ? stride_told : 0);
   const bool slips = std::abs(turn) > 1.5 * std::abs(to.theta - from.theta) + 0.02;
   for (std::size_t i = 0; i < 3; ++i) {
-    const bool counts = !stands && !(i == 2 && slips);
+    const bool counts = !stands && !jumps && !(i == 2 && slips);
     cross_[i] = kept * cross_[i] + (counts ? told[i] * moved[i] : 0);
     commanded_squares_[i] = kept * commanded_squares_[i] + (counts ? told[i] * told[i] : 0);
     all_told += commanded_squares_[i];

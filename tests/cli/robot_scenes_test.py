@@ -60,7 +60,7 @@ class RobotScenes(ProgramTest):
 
     def test_each_part_can_stop_and_start_again(self):
         summary, _, run_file = self.scene("robot_restart")
-        self.assertEqual(summary["outcome"], "8 of 8 came back")
+        self.assertEqual(summary["outcome"], "10 of 10 came back")
         said = self.events(run_file, "robot server") + self.events(run_file, "tracker") + self.events(run_file, "serial line")
         for words in ("robot server is gone", "hears nothing from the robot", "tracker has lost the base", "serial line loses bytes",
                       "swapped axes"):
