@@ -311,8 +311,7 @@ int robot_text(lua_State* L) {
 /// The robot whose server is called so; null: there is none.
 RobotPointer robot_served_by(const ScriptState& state, const std::string& server) {
   for (const auto& companion : state.companions)
-    if (const auto robot = std::dynamic_pointer_cast<RobotNode>(companion); robot && robot->server == server)
-      return robot;
+    if (auto robot = std::dynamic_pointer_cast<RobotNode>(companion); robot && robot->server == server) return robot;
   return nullptr;
 }
 
