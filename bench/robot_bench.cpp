@@ -53,7 +53,7 @@ void BM_Robot(benchmark::State& state) {
     Robot robot(settings, make_board("host"));
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 1; i <= kMilliseconds; ++i) {
-      robot.follow(i % 2000 < 1000 ? 0.08 : -0.08, 0.02, Vector3d(0, 0, 0.55));
+      robot.follow(i % 2000 < 1000 ? 0.08 : -0.08, 0.02);
       robot.load({{3, 0, -2}, {0, 1, 0}});
       robot.advance(i * kMillisecond);
     }

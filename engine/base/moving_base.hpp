@@ -4,8 +4,6 @@
 // where the device is bolted to what carries it. SI units.
 #pragma once
 
-#include <string>
-
 #include "engine/base/pose.hpp"
 
 namespace verisim {
@@ -21,9 +19,9 @@ class MovingBase {
   [[nodiscard]] virtual const Pose& pose() const = 0;
   /// X_WB as the room's tracker said it last; where it began, before the first report.
   [[nodiscard]] virtual const Pose& tracked_pose() const = 0;
-  /// What moves the base, in the frame to come: how far the handle, at p_BH, is from the device's neutral place along x
-  /// and z of B [m].
-  virtual void follow(double error_x, double error_z, const Vector3d& p_BH) = 0;
+  /// What moves the base, in the frame to come: how far the handle is from the device's neutral place, along x and z of
+  /// B [m].
+  virtual void follow(double error_x, double error_z) = 0;
   /// What the hand shall feel of the room's limits, beside what it feels already: force at the handle, in B [N].
   [[nodiscard]] virtual const Vector3d& limit() const = 0;
   /// What stands on the base pushes it in the frame to come: force and torque about B's origin, in B [N, N m]. Several

@@ -60,7 +60,7 @@ class RemoteBase final : public ForwardingDevice {
     ForwardingDevice::sample(frame);
     const Vector3d& p = reading().handle.position;
     error_ = {p.x() - description_.neutral_x, p.z() - description_.neutral_z};
-    base_->follow(*description_.gain * error_[0], *description_.gain * error_[1], p);
+    base_->follow(*description_.gain * error_[0], *description_.gain * error_[1]);
   }
   void render(const Wrench& wrench, const DeviceFrame& frame) override {
     ForwardingDevice::render({wrench.force + base_->limit(), wrench.torque}, frame);

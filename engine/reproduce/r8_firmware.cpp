@@ -110,7 +110,7 @@ double top_speed(double volts) {
   settings.plant.supply.voltage = volts;
   robot::Robot base(settings, robot::make_board("host"));
   for (int ms = 1; ms <= 3000; ++ms) {
-    base.follow(1, 0, Vector3d(1, 0, 0));
+    base.follow(1, 0);
     base.advance(ms * robot::kMillisecond);
   }
   return base.plant().state().twist.vx;

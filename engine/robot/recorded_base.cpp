@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
@@ -75,6 +76,12 @@ void RecordedBase::advance(double t) {
   X_WB_ = base_in_world(place_, settings_.device);
   const auto [x, y, theta] = estimate_.place();
   tracked_X_WB_ = base_in_world({x, y, theta}, settings_.device);
+}
+
+void RecordedBase::report(PartNotes& notes) {
+  if (!std::exchange(is_said_, true))
+    notes.add("robot", "is moved by a recording: what drives it, its walls and its reaction change nothing");
+  tracker_.report(notes);
 }
 
 void RecordedBase::declare(Columns& columns) const {

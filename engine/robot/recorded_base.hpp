@@ -31,11 +31,11 @@ class RecordedBase final : public Companion, public MovingBase {
   void advance(double t) override;
   [[nodiscard]] double duration() const override { return samples_.t.back(); }
   void declare(Columns& columns) const override;
-  void report(PartNotes& notes) override { tracker_.report(notes); }
+  void report(PartNotes& notes) override;
 
   [[nodiscard]] const Pose& pose() const override { return X_WB_; }
   [[nodiscard]] const Pose& tracked_pose() const override { return tracked_X_WB_; }
-  void follow(double /*error_x*/, double /*error_z*/, const Vector3d& /*p_BH*/) override {}
+  void follow(double /*error_x*/, double /*error_z*/) override {}
   void load(const Wrench& /*wrench*/) override {}
   [[nodiscard]] const Vector3d& limit() const override { return limit_; }
 
@@ -47,6 +47,7 @@ class RecordedBase final : public Companion, public MovingBase {
   std::vector<PlanarPose> places_;  ///< of each row, F
   BaseTracker tracker_;
   BaseEstimate estimate_;
+  bool is_said_ = false;    ///< that it is a recording
   std::size_t row_ = 0;     ///< the last one that has passed
   std::uint64_t done_ = 0;  ///< ms
   PlanarPose place_;

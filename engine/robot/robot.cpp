@@ -59,7 +59,7 @@ Robot::Robot(RobotSettings settings, std::unique_ptr<firmware::Board> board)
   place_device(0);
 }
 
-void Robot::follow(double error_x, double error_z, const Vector3d& /*p_BH*/) {
+void Robot::follow(double error_x, double error_z) {
   error_D_ = {error_x, -error_z};
 }
 
@@ -181,6 +181,8 @@ void Robot::declare(Columns& columns) const {
   }
   columns.add(cost + "tipping", "1", "substeps of the plant in which a wheel carried nothing, since the beginning",
               [this] { return plant_.tipping(); });
+  columns.add(cost + "unsettled", "1", "substeps in which the wheels' forces found no end, since the beginning",
+              [this] { return plant_.unsettled(); });
   columns.add(cost + "edges_left_out", "1", "edges of the encoders for which there was no room, since the beginning",
               [this] { return plant_.edges_dropped(); });
   columns.add(cost + "busy_cycles", "1", "of the board's processor since the beginning; host: 0",

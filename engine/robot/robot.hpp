@@ -61,7 +61,7 @@ class Robot final : public Companion, public MovingBase {
   // MovingBase
   [[nodiscard]] const Pose& pose() const override { return X_WB_; }
   [[nodiscard]] const Pose& tracked_pose() const override { return tracked_X_WB_; }
-  void follow(double error_x, double error_z, const Vector3d& p_BH) override;
+  void follow(double error_x, double error_z) override;
   void load(const Wrench& wrench) override;
   [[nodiscard]] const Vector3d& limit() const override { return limit_B_; }
 

@@ -18,9 +18,8 @@ constexpr const char* kRobotWord = "Robot";
 constexpr const char* kRemoteBase = "VRPNRemoteBase";
 /// Published gains are in the wire's units: mm/s for each m of error.
 constexpr double kGainUnit = 1000;
-/// m: more than the tracker is off, and than who pulls at the device with 20 N makes the wheels slip.
 constexpr double kSightClearance = 0.35;  ///< rad: the Virtuose, 0.4 m wide, at an arm's length from the eyes
-constexpr double kMarginOfPull = 0.03;
+constexpr double kMarginOfPull = 0.03;    ///< m: the tracker's error, and the slip while somebody pulls with 10 N
 
 robot::EncoderSamples read_encoder_samples(Inputs& inputs, const std::string& name) {
   const Trace trace = parse_trace(name, inputs.read(name), "encoder", {});
@@ -97,9 +96,9 @@ void read_tracker(lua_State* L, Fields& fields, RobotNode& node) {
   lua_pop(L, 1);
 }
 
-void read_line(Fields& fields, RobotNode& node) {
+void read_line(lua_State* L, Fields& fields, RobotNode& node) {
   robot::SerialLineSettings& line = node.settings.line;
-  line.baud = static_cast<std::uint32_t>(fields.positive("baud").value_or(line.baud));
+  line.baud = static_cast<std::uint32_t>(at_most(L, fields, "baud", line.baud, 2e6));
   line.latency = fields.not_negative("lineDelay", line.latency);
   line.loss = fields.not_negative("loss", line.loss);
   line.corruption = fields.not_negative("corruption", line.corruption);
@@ -128,12 +127,15 @@ void read_head(lua_State* L, Fields& fields, RobotNode& node) {
     node.head = get<HeadPointer>(L, lua_gettop(L), fields.name_of("head"));
     lua_pop(L, 1);
     heading.clearance = kSightClearance;
+  } else if (fields.accepted("sightClearance")) {
+    raise(L, "{} needs head: the WiiHead whose line of sight is kept clear", fields.name_of("sightClearance"));
   }
   heading.clearance = at_most(L, fields, "sightClearance", heading.clearance, pinned::kPi / 2);
 }
 
-void read_place(Fields& fields, RobotNode& node) {
+void read_place(lua_State* L, Fields& fields, RobotNode& node) {
   const Vector3d p = fields.vector("position").value_or(Vector3d::Zero());
+  if (p.y() != 0) raise(L, "{} has a y of {:g} m but the floor is y = 0", fields.name_of("position"), p.y());
   node.settings.start = {p.x(), -p.z(), fields.number("heading", 0)};
   node.settings.pilot.drive.heading.desired = node.settings.start.theta;
   const Vector3d B = fields.vector("device").value_or(Vector3d(0, node.settings.device.z(), 0));
@@ -155,12 +157,12 @@ int robot_word(lua_State* L) {
   node->board = fields.text("board").value_or(node->board);
   if (node->board != "host" && node->board != "avr")
     raise(L, "{}: board is '{}'{}", kRobotWord, node->board, suggestion(node->board, {"host", "avr"}));
-  read_place(fields, *node);
+  read_place(L, fields, *node);
   robot::RobotSettings& settings = node->settings;
   settings.pilot.server.gain = fields.not_negative("gain", kGainUnit * settings.pilot.server.gain) / kGainUnit;
   settings.plant.supply.voltage = fields.positive("supply").value_or(settings.plant.supply.voltage);
   settings.plant.body.mass = fields.positive("mass").value_or(settings.plant.body.mass);
-  read_line(fields, *node);
+  read_line(L, fields, *node);
   read_tracker(L, fields, *node);
   read_head(L, fields, *node);
   read_walls(L, fields, *node);

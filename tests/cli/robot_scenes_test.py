@@ -105,6 +105,7 @@ class RobotScenes(ProgramTest):
             trace = numpy.genfromtxt([line for line in f if not line.startswith("#")], delimiter=",", names=True)
         with h5py.File(run_file) as f:
             pose, t = f["state/robot/robot/pose"][()], f["state/time"][()]
+        self.assertTrue(any("is moved by a recording" in text for text in self.events(run_file, "robot")))
         wanted = numpy.interp(t, trace["t"], trace["x"] - trace["x"][0]) - 0.1
         self.assertLess(numpy.abs(pose[:, 0] - wanted).max(), 1e-9)
 
@@ -130,6 +131,9 @@ class RobotScenes(ProgramTest):
         refuse(["rate"], "Robot{ tracker = { rate = -60 } }")
         refuse(["rate", "5000"], "Robot{ tracker = { rate = 5000 } }")
         refuse(["baud"], "Robot{ baud = 9 }")
+        refuse(["baud", "at most"], "Robot{ baud = 1e12 }")
+        refuse(["sightClearance", "head"], "Robot{ sightClearance = 0.3 }")
+        refuse(["position", "y = 0"], "Robot{ position = {0, 1, 0} }")
         refuse(["already"], "Robot{} Robot{}")
         refuse(["remote base", "already"], "VRPNRemoteBase(VRPNRemoteBase(Devices.Ideal{}, 0, 0, 'Robot@a'), 0, 0, 'Robot@b')")
         refuse(["must be a Robot"], "Devices.Ideal{ base = 3 }")

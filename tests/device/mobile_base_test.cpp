@@ -25,7 +25,7 @@ struct WrittenBase final : MovingBase {
   [[nodiscard]] const Pose& pose() const override { return X_WB; }
   [[nodiscard]] const Pose& tracked_pose() const override { return X_WB; }
   Vector3d wall = Vector3d::Zero();
-  void follow(double to_x, double to_z, const Vector3d& /*p_BH*/) override { x = to_x, z = to_z; }
+  void follow(double to_x, double to_z) override { x = to_x, z = to_z; }
   [[nodiscard]] const Vector3d& limit() const override { return wall; }
   void load(const Wrench& wrench) override { loaded += wrench; }
 };

@@ -22,7 +22,7 @@ struct Walker {
   /// To the frame's end at t: the handle is at p_W, whatever the base does.
   void frame(double t, const Vector3d& p_W, const Wrench& felt_by_base = {}) {
     const Vector3d p_BH = robot.pose().inverse() * p_W;
-    robot.follow(p_BH.x(), p_BH.z() - 0.55, p_BH);
+    robot.follow(p_BH.x(), p_BH.z() - 0.55);
     robot.load(felt_by_base);
     robot.advance(t);
   }
