@@ -9,9 +9,9 @@
 //   followed_i = sum(commanded_i moved_i) / sum(commanded_i^2)        1: as told   0: not at all   below: the other way
 // The base is judged along an axis once sum(commanded_i^2) is above (0.05 m)^2, a third of a second at 0.3 m/s.
 //   wrong:   followed < 0.3 (yaw: < -0.5, because the user's torque turns the base too)
-// A stride with |moved|^2 < 0.1 |commanded|^2 is left out of these sums. Where such strides outweigh the others the
-// base is
-//   idle:    it does not follow at all. Motor power is off, or a wheel is stuck
+// A stride with |moved|^2 < 0.1 |commanded|^2 is left out of these sums. Where such strides outweigh the others:
+//   idle:    the base does not follow at all. Motor power is off, or a wheel is stuck
+// A stride of more than 1.5 m/s is left out, too: no base makes it, but the tracker's axes when they are set up anew.
 // A stride that turns by more than 1.5 times what was commanded, and 0.02 rad, tells nothing about yaw: the base slips.
 // A motion along x = y is the same with swapped axes: that is not found, and does no harm while it lasts.
 // Robot coordinates R by the tracked yaw. No allocation after construction; a few ns in a millisecond without a report.

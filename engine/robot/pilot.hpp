@@ -1,8 +1,8 @@
 // The host's side of the robot as one thing: error -> gain -> drive law -> walls -> command -> bytes, once a
 // millisecond. The order is part of the result. Coordinates D, R, F as in drive_law.hpp. No allocation, no wall clock.
 //
-//   handle -> DriveLaw::error_R -> RobotServer::wanted -> DriveLaw::advance -> Walls::limit -> RobotServer -> line
-//                                  gain, NaN              heading, lost, stop  tracked pose    rate, rounding
+//   handle -> DriveLaw::error_R -> RobotServer::wanted -> DriveLaw::advance -> ramp -> Walls::limit -> RobotServer
+//                                  gain, NaN              heading, lost, stop  slip    tracked pose    rate, rounding
 //
 // The server can be killed and started at any time. With it ends what the drive law held against the tracker, and what
 // the walls know of the base's motion: after start() they take the worst for granted until the tracker has seen it.

@@ -11,11 +11,9 @@
 // - StartControl turns the controller on, from standstill, and forgets a fault. EndControl turns it off: the motors get
 //   nothing. After a reset it is off.
 // - Watchdog: kWatchdogMs without an accepted command bring the setpoints evenly to 0 within kStopSteps samples. The
-// next
-//   command goes on.
+//   next command goes on.
 // - A wheel that contradicts its drive (drive.hpp) stops all four at once, until StartControl: a base with three wheels
-// goes
-//   where nobody sent it.
+//   goes where nobody sent it.
 // Reports every kReportMs: setpoints in force (0 while off, stopped or at fault: that is how the robot says it),
 // velocities, PWM. A setpoint that stays 0 against what is commanded asks for StartControl.
 #pragma once

@@ -5,9 +5,9 @@
 // state.
 //
 // The protocol states no units. These are ours, in robot coordinates (x forward, y left, rotation counter-clockwise
-// seen from above):   error: m and rad   velocity: mm/s and mrad/s   wheels: front left, front right, rear left, rear
-// right setpoint and velocity of a wheel: RPM of its motor   PWM: -255 to 255   each positive when it drives the robot
-// forward
+// seen from above). Errors: m and rad. Velocities: mm/s and mrad/s. Wheels: front left, front right, rear left, rear
+// right; setpoint and velocity in RPM of the motor, PWM from -255 to 255, each positive when it drives the robot
+// forward.
 #pragma once
 
 #include <stdint.h>

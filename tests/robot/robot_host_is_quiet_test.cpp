@@ -2,26 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <new>
 
 #include "engine/robot/pilot.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
+#include "tests/contact/allocations.hpp"
 
 namespace verisim::robot::robot_host_is_quiet_test {
 namespace {
@@ -37,7 +20,7 @@ TEST(RobotHost, AllocatesNothingPerMillisecond) {
   SerialLine up({.loss = 0.05, .corruption = 0.01}, 1, "up"), down({.receiver_baud = 57'600}, 1, "down");
   RobotNotes notes;
   std::size_t received = 0, said = 0;
-  const std::size_t before = allocations;
+  const std::uint64_t before = allocations;
   pilot.start();
   for (int ms = 0; ms < 10'000; ++ms) {
     if (ms == 3000) pilot.kill();
