@@ -25,6 +25,7 @@
 #include "engine/base/quantile.hpp"
 #include "engine/base/random.hpp"
 #include "engine/ruler/ruler.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::bench {
 namespace {

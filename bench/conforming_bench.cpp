@@ -9,6 +9,7 @@
 #include "bench/played_scenario.hpp"
 #include "bench/promise.hpp"
 #include "engine/base/quantile.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::bench {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "engine/base/pose.hpp"
 #include "engine/voxel/voxelize.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/voxel/shapes.hpp"
 
 namespace verisim::bench {

@@ -8,7 +8,7 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")  # asserts stay on: a broken promise must not go unseen in a result
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # asserts stay on: a broken promise must not go unseen in a result
 
 # Reading headers costs most of a compile (Eigen alone 1 s), so up to eight files of a library are compiled as one unit.
 # Each must still compile alone (-DVERISIM_UNITY=OFF), and names in its anonymous namespace are unique within its library.
@@ -22,6 +22,8 @@ if(VERISIM_CCACHE)
 endif()
 
 add_library(verisim_flags INTERFACE)
+# What assertions say of their place begins at the project's folder, so that the compiler cache serves a clone elsewhere.
+target_compile_options(verisim_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 target_compile_options(verisim_flags INTERFACE -ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
 target_include_directories(verisim_flags INTERFACE ${PROJECT_SOURCE_DIR})
 # Small functions on small arrays (engine/exact): -O3 inlines them.

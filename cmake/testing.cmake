@@ -6,13 +6,13 @@ find_package(GTest REQUIRED)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(VERISIM_SHARED_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "Recordings and models of other people; tests that need them say when they are absent")
 set(VERISIM_SHARED_REFERENCE "${PROJECT_SOURCE_DIR}/../shared/reference" CACHE PATH "Recorded facts of published pieces")
+set(VERISIM_GENERATED ${CMAKE_BINARY_DIR}/generated)
+configure_file(${PROJECT_SOURCE_DIR}/tests/support/paths.hpp.in ${VERISIM_GENERATED}/tests/support/paths.hpp @ONLY)
 
 function(verisim_test_program target)
   add_executable(${target})
   target_link_libraries(${target} PRIVATE verisim_flags GTest::gtest_main)
-  target_compile_definitions(${target} PRIVATE VERISIM_SHARED_DATA="${VERISIM_SHARED_DATA}"
-                             VERISIM_SHARED_REFERENCE="${VERISIM_SHARED_REFERENCE}" VERISIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                             VERISIM_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_include_directories(${target} PRIVATE ${VERISIM_GENERATED})
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM

@@ -7,6 +7,7 @@
 
 #include "engine/script/scenario.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::batch::iso286_test {
 namespace {

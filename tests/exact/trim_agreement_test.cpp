@@ -15,6 +15,7 @@
 #include "tests/exact/scenes.hpp"
 #include "tests/geometry/models.hpp"
 #include "tests/length.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/voxel/shapes.hpp"
 
 namespace verisim::exact::test::trim_agreement_test {

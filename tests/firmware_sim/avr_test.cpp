@@ -10,6 +10,7 @@
 #include "tests/firmware_sim/bench_robot.hpp"
 #include "tests/length.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::firmware {
 namespace avr_test {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware_sim/protocol/frame.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::protocol {
 namespace golden_test {

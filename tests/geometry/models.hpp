@@ -12,6 +12,7 @@
 
 #include "engine/geometry/loader.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::testing {
 

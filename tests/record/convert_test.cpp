@@ -7,6 +7,7 @@
 #include "engine/base/error.hpp"
 #include "engine/record/trace.hpp"
 #include "tests/record/small_run.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::convert_test {
 namespace {

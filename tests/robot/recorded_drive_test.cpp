@@ -10,6 +10,7 @@
 #include "engine/record/trace.hpp"
 #include "engine/robot/odometry.hpp"
 #include "tests/record/small_run.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::robot::recorded_drive_test {
 namespace {

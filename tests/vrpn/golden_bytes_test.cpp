@@ -6,6 +6,7 @@
 
 #include "engine/vrpn/connection.hpp"
 #include "engine/vrpn/payload.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::vrpn::golden_bytes_test {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/wii/channels.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::wii {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/wii/recordings.hpp"
 
 namespace verisim::wii::virtual_remote_test {

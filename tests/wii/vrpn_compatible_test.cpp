@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/wii/tracker.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/wii/recordings.hpp"
 
 namespace verisim::wii::vrpn_compatible_test {
