@@ -11,7 +11,7 @@
 
 namespace verisim::test {
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(VERISIM_SANITIZED)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

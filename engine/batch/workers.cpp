@@ -102,7 +102,7 @@ void Workers::be_worker(std::uint64_t run, int answer, int words, int parent) co
   ::dup2(words, STDERR_FILENO);
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
-#ifndef __SANITIZE_ADDRESS__  // whose shadow memory takes terabytes of address space
+#ifndef VERISIM_SANITIZED  // whose shadow memory takes terabytes of address space
   if (limits_.memory_bytes > 0) {
     const rlimit memory{limits_.memory_bytes, limits_.memory_bytes};
     ::setrlimit(RLIMIT_AS, &memory);

@@ -12,7 +12,7 @@ namespace {
 
 std::atomic<std::size_t> refused_bytes = 0;
 
-#ifndef __SANITIZE_ADDRESS__  // which has an operator new of its own
+#ifndef VERISIM_SANITIZED  // which has an operator new of its own
 void* allocate(std::size_t bytes, std::size_t alignment) {
   void* memory = nullptr;
   if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__)
@@ -36,7 +36,7 @@ std::string with_unit(double bytes) {
 
 }  // namespace
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef VERISIM_SANITIZED
 void* operator new(std::size_t bytes) {
   return allocate_or_throw(bytes, 1);
 }

@@ -5,9 +5,9 @@
 
 #include "engine/base/error.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(VERISIM_SANITIZED)
 // HDF5 1.10 forgets some memory when it refuses a damaged file; that would hide what this program forgets. The
-// sanitizer, a library of its own, finds these functions only if they are not hidden (engine/CMakeLists.txt).
+// sanitizer, with g++ a library of its own, finds these functions only if they are not hidden (engine/CMakeLists.txt).
 #define VERISIM_SANITIZER_HOOK extern "C" __attribute__((visibility("default")))
 VERISIM_SANITIZER_HOOK const char* __lsan_default_suppressions() {
   return "leak:libhdf5";

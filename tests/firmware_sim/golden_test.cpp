@@ -102,7 +102,7 @@ class Golden : public testing::Test {
 
 TEST_F(Golden, FramesHaveTheirPublishedLengthsAndCapacities) {
   for (const auto& [name, format] : golden["format"]["collections"].items())
-    with_collection(name, [&format]<typename Named>() {
+    with_collection(name, [&format = format]<typename Named>() {
       EXPECT_EQ(format["messages"].size(), Named::count);
       EXPECT_EQ(format["capacity"], Receiver<Named>::kCapacity);
       for (const json& message : format["messages"])

@@ -38,7 +38,7 @@ TEST_P(TwoPointContact, SolvesItsEquation) {
 TEST_P(TwoPointContact, IsWhereThePreciseSurfacesMeet) {
   const auto& [r, degrees, half_digit] = GetParam();
   exact::test::Pair pair(exact::test::block_solid(), exact::test::pin_solid(0.075 - r), 0.0045);
-  const auto gap = [&](double share) {
+  const auto gap = [&pair, degrees = degrees](double share) {
     const Pose tilted = {Vector3d::Zero(), rotation_from_vector({0, share * degrees * kDegree, 0})};
     return pair.gap_at(tilted, /*margin=*/1e-3);
   };

@@ -155,7 +155,8 @@ void print_rows(const char* what, const std::vector<Outcome>& outcomes, std::str
   for (const Outcome& outcome : outcomes) by_kind[outcome.*kind].push_back(outcome);
   std::printf("%-12s %5s %6s %10s %10s %10s %8s %7s %7s %12s\n", what, "runs", "meet", "median um", "95 % um", "max um",
               "outside", ">50 um", "energy", "+ at most um");
-  for (auto& [name, rows] : by_kind) {
+  for (auto& [name, of_kind] : by_kind) {
+    std::vector<Outcome>& rows = of_kind;
     std::sort(rows.begin(), rows.end(),
               [](const Outcome& a, const Outcome& b) { return std::abs(a.difference) < std::abs(b.difference); });
     const auto at = [&](double q) {

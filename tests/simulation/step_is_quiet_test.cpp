@@ -40,7 +40,7 @@ void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* p, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 
-#ifndef __SANITIZE_ADDRESS__  // the sanitizer stands there itself
+#ifndef VERISIM_SANITIZED  // the sanitizer stands there itself
 void* malloc(std::size_t size) {
   note(allocations);
   return __libc_malloc(size);
@@ -225,7 +225,7 @@ TEST(StepIsQuiet, WhileHeadsAreTracked) {
 
 // The alarm itself works.
 TEST(StepIsQuiet, NoticesAnAllocationALockAndAClock) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef VERISIM_SANITIZED
   GTEST_SKIP() << "the sanitizer stands where this test counts allocations";
 #endif
   allocations = locks = clock_reads = 0;

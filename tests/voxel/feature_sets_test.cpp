@@ -20,7 +20,7 @@ Set random_set(test::Inputs& inputs, double largest) {
   Set set(static_cast<std::size_t>(inputs.between(0, 5)));
   for (EntityNumber& e : set) e = static_cast<EntityNumber>(inputs.between(0, largest));
   std::ranges::sort(set);
-  set.erase(std::ranges::unique(set).begin(), set.end());
+  set.erase(std::unique(set.begin(), set.end()), set.end());
   return set;
 }
 

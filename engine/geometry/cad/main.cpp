@@ -131,7 +131,7 @@ void limit_harm() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // who would read the answer?
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-#ifndef __SANITIZE_ADDRESS__  // whose shadow memory is larger than any limit
+#ifndef VERISIM_SANITIZED  // whose shadow memory is larger than any limit
   const rlimit memory{rlim_t{4} << 30, rlim_t{4} << 30};
   setrlimit(RLIMIT_AS, &memory);
 #endif
