@@ -11,7 +11,7 @@ configure_file(${PROJECT_SOURCE_DIR}/tests/support/paths.hpp.in ${VERISIM_GENERA
 
 function(verisim_test_program target)
   add_executable(${target})
-  target_link_libraries(${target} PRIVATE verisim_flags GTest::gtest_main)
+  target_link_libraries(${target} PRIVATE verisim_flags verisim_off_the_loop GTest::gtest_main)
   target_include_directories(${target} PRIVATE ${VERISIM_GENERATED})
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)
