@@ -4,4 +4,8 @@
 # the very files it was made from, and a cached one has older ones.
 compiler=$1
 shift 2
+# clang++ would build a new precompiled header on top of the old one that it replaces.
+for argument; do
+  case $argument in *.gch) rm -f "$argument" ;; esac
+done
 exec "$compiler" "$@"
