@@ -1,6 +1,6 @@
 // Apart from hash.cpp: the library's own choice of vector width does not go together with its inlined functions.
-#include <xxhash.h>
 #include <xxh_x86dispatch.h>
+#include <xxhash.h>
 
 #include "engine/base/hash.hpp"
 

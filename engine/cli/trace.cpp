@@ -9,6 +9,7 @@
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
+#include "engine/cli/wii_synth.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/record/synth.hpp"
 #include "engine/record/trace.hpp"
@@ -151,29 +152,61 @@ Trace encoder_trace(const std::string& path, const std::map<std::string, double>
   return trace;
 }
 
+/// Error(usage) for an option that the kind does not know.
+void check_options_of_kind(const CLI::App& command, const std::string& kind) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    const bool of_wii = option->get_group() == "Set-up" || option->check_name("--trajectory") ||
+                        option->check_name("--motion") || option->check_name("--sensor");
+    if (of_wii && kind != "wii") fail(ErrorKind::usage, "{}: '{}' has none; only wii has", option->get_name(), kind);
+    if (option->check_name("--path") && kind != "encoder")
+      fail(ErrorKind::usage, "--path {}: '{}' has none; only encoder has", option->results().front(), kind);
+    if (option->check_name("--set") && kind == "wii")
+      fail(ErrorKind::usage, "--set {}: 'wii' has none; its options are in the help", option->results().front());
+  }
+}
+
+/// What the trace was made from, so that it can be made again: the options that were given, but not where it goes.
+std::string written_options(const CLI::App& command) {
+  std::string text = "verisim trace synth wii";
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || option->get_positional() || option->check_name("--out") ||
+        option->check_name("--force"))
+      continue;
+    text += fmt::format(" {} {}", option->get_name(), fmt::join(option->results(), " "));
+  }
+  return text;
+}
+
 void add_synth(CLI::App& trace, int& exit_code) {
   struct Options {
     std::string kind;
     std::string path;
     OutOptions out;
     std::vector<std::string> sets;
+    VirtualRunOptions wii;
     std::uint64_t seed = 1;
   };
   auto* command = trace.add_subcommand("synth", "Makes a trace from a formula");
   auto o = std::make_shared<Options>();
   command
-      ->add_option("KIND", o->kind,
-                   "What to make: " + synthesizer_help() +
-                       "\nencoder, of a mecanum base that drives along --path without slip:" + robot::drive_help())
+      ->add_option(
+          "KIND", o->kind,
+          "What to make: " + synthesizer_help() +
+              "\nwii, of a virtual Wii Remote that sees a head, with the true poses (trajectories and sensors: "
+              "wii validate --help)\nencoder, of a mecanum base that drives along --path without slip:" +
+              robot::drive_help())
       ->required();
   add_out_options(*command, o->out, "Trace to write, .csv or .h5; only a trace is replaced")->required();
   command->add_option("--set", o->sets, "KEY=NUMBER: a parameter of the kind")->take_all();
   command->add_option("--path", o->path,
                       fmt::format("Of encoder: {} (default: straight)", fmt::join(robot::drive_paths(), ", ")));
+  o->wii.add(*command);
   add_seed_option(
       *command, [o](std::uint64_t seed) { o->seed = seed; }, "Seed of its random streams (0 to 2^64 - 1)");
   command->footer(
       "Example: verisim trace synth insertion -o insert.csv --set depth=0.3\n"
+      "          verisim trace synth wii --trajectory natural --sensor wiimote -o head.csv\n"
       "          verisim trace synth encoder --path square -o square.csv --set length=2");
   command->callback([=, &exit_code] {
     std::map<std::string, double> parameters;
@@ -185,17 +218,27 @@ void add_synth(CLI::App& trace, int& exit_code) {
     }
     std::vector<std::string> kinds = synthesizers();
     kinds.emplace_back("encoder");
+    kinds.emplace_back("wii");
     if (std::find(kinds.begin(), kinds.end(), o->kind) == kinds.end()) {
       const std::string near = nearest_name(o->kind, kinds);
       fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o->kind,
            near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
     }
-    const bool is_drive = o->kind == "encoder";
-    if (!is_drive && !o->path.empty())
-      fail(ErrorKind::usage, "--path {}: '{}' has none; only encoder has", o->path, o->kind);
-    const std::string out = check_output({o->out.path, OutputKind::trace, o->out.force, {}});
-    write_trace(out, is_drive ? encoder_trace(o->path.empty() ? "straight" : o->path, parameters)
-                              : synthesize(o->kind, parameters, o->seed));
+    check_options_of_kind(*command, o->kind);
+    std::vector<FileIdentity> inputs;
+    const auto make = [&] {
+      if (o->kind == "encoder") return encoder_trace(o->path.empty() ? "straight" : o->path, parameters);
+      if (o->kind != "wii") return synthesize(o->kind, parameters, o->seed);
+      o->wii.seed = o->seed;
+      return wii_trace_of(run_virtually(o->wii, inputs), written_options(*command));
+    };
+    if (o->kind == "wii") {  // what is read is known only then
+      const Trace made = make();
+      write_trace(check_output({o->out.path, OutputKind::trace, o->out.force, {}}, inputs), made);
+    } else {
+      const std::string out = check_output({o->out.path, OutputKind::trace, o->out.force, {}});
+      write_trace(out, make());
+    }
     exit_code = 0;
   });
 }

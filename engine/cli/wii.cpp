@@ -129,10 +129,11 @@ void add_place(CLI::App& wii_command, int& exit_code) {
 }  // namespace
 
 void add_wii(CLI::App& app, int& exit_code) {
-  auto* command =
-      app.add_subcommand("wii", "The head trackers: validate them, place a remote, track a trace, speak VRPN");
+  auto* command = app.add_subcommand(
+      "wii", "The head trackers: validate them, judge your own, place a remote, track a trace, speak VRPN");
   command->require_subcommand(1);
   add_wii_validate(*command, exit_code);
+  add_wii_judge(*command, exit_code);
   add_place(*command, exit_code);
   add_wii_track(*command, exit_code);
   add_wii_serve(*command, exit_code);

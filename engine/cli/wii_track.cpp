@@ -30,18 +30,37 @@ std::string pose_row(double t, const wii::Report& report) {
                      q[1], q[2], q[3], v[0], v[1], v[2], v[3], v[4], v[5]);
 }
 
+std::string full_pose_header() {
+  std::string text = kPoseHeader;
+  text.back() = ',';
+  text += "news,reacquired";
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) text += fmt::format(",c{}{}", i, j);
+  return text + "\n";
+}
+
+std::string full_pose_row(double t, const wii::Report& report) {
+  std::string text = pose_row(t, report);
+  text.back() = ',';
+  text += fmt::format("{:d},{:d}", report.news, report.reacquired);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) text += fmt::format(",{}", report.covariance(i, j));
+  return text + "\n";
+}
+
 namespace {
 
-std::string track(const wii::Recording& first, const wii::Recording* second, const std::string& name) {
+std::string track(const wii::Recording& first, const wii::Recording* second, const std::string& name, bool full) {
   wii::TrackerSettings settings = first.settings;
   if (second != nullptr) settings.X_R1R2 = first.X_WR.inverse() * second->X_WR;
   const std::unique_ptr<wii::Tracker> tracker = wii::make_tracker(name, settings);
-  std::string text = kPoseHeader;
+  std::string text = full ? full_pose_header() : kPoseHeader;
   std::size_t other = 0;
   for (std::size_t i = 0; i < first.t.size(); ++i) {
     for (; second != nullptr && other < second->t.size() && second->t[other] <= first.t[i]; ++other)
       (void)tracker->update(second->t[other], second->channels[other], 1);
-    text += pose_row(first.t[i], tracker->update(first.t[i], first.channels[i]));
+    const wii::Report& report = tracker->update(first.t[i], first.channels[i]);
+    text += full ? full_pose_row(first.t[i], report) : pose_row(first.t[i], report);
   }
   return text;
 }
@@ -52,6 +71,7 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
   struct Options {
     std::string trace, second, tracker = "geometric";
     OutOptions out;
+    bool full = false;
     TraceLimits limits;
   };
   auto* command =
@@ -63,6 +83,7 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
                       fmt::format("Trace of the second remote, for {}; both say '# remote_pose:'", of_two));
   command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(wii::tracker_names()));
   add_out_options(*command, o->out, "CSV to write; only a CSV of poses is replaced")->required();
+  command->add_flag("--full", o->full, "Append news, reacquired and the whole covariance, c00 … c55 row by row");
   command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s");
   command->add_flag("--resort", o->limits.resort, "Sort the samples by time first");
   command->footer("Example: verisim wii track head.csv --tracker scaat -o pose.csv");
@@ -80,8 +101,12 @@ void add_wii_track(CLI::App& wii_command, int& exit_code) {
         fail(ErrorKind::input, "{}: no '# remote_pose:'; {} must know where the second remote is", o->second,
              o->tracker);
     }
-    (void)check_output({o->out.path, OutputKind::text, o->out.force, kPoseHeader}, inputs);  // before the work
-    write_text(o->out.path, track(first, o->second.empty() ? nullptr : &second, o->tracker), o->out.force, inputs);
+    // Before the work. A short table and a full one begin alike.
+    std::string beginning = kPoseHeader;
+    beginning.pop_back();
+    (void)check_output({o->out.path, OutputKind::text, o->out.force, beginning}, inputs);
+    write_text(o->out.path, track(first, o->second.empty() ? nullptr : &second, o->tracker, o->full), o->out.force,
+               inputs);
     exit_code = 0;
   });
 }

@@ -29,8 +29,4 @@ vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds) {
   return timestamp(total(begin) + microseconds);
 }
 
-std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end) {
-  return total(end) - total(begin);
-}
-
 }  // namespace verisim::cli

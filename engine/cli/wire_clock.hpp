@@ -11,7 +11,5 @@ namespace verisim::cli {
 [[nodiscard]] vrpn::Timestamp wire_time();
 /// `begin` plus a number of microseconds. @pre that is not before 1970
 [[nodiscard]] vrpn::Timestamp later(const vrpn::Timestamp& begin, std::int64_t microseconds);
-/// From `begin` to `end`.
-[[nodiscard]] std::int64_t microseconds_between(const vrpn::Timestamp& begin, const vrpn::Timestamp& end);
 
 }  // namespace verisim::cli

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/reproduce/statistics.hpp"
+#include "engine/base/statistics.hpp"
 
 namespace verisim::reproduce {
 

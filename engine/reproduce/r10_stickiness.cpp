@@ -13,7 +13,7 @@
 #include "engine/record/output_place.hpp"
 #include "engine/reproduce/chart.hpp"
 #include "engine/reproduce/reproductions.hpp"
-#include "engine/reproduce/statistics.hpp"
+#include "engine/base/statistics.hpp"
 
 namespace verisim::reproduce {
 namespace {

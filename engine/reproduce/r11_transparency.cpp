@@ -6,7 +6,7 @@
 #include "engine/base/error.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
-#include "engine/reproduce/statistics.hpp"
+#include "engine/base/statistics.hpp"
 
 namespace verisim::reproduce {
 namespace {

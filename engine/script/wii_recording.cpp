@@ -67,23 +67,6 @@ Pose pose_of(const std::string& file, const std::vector<double>& p) {
   return pose;
 }
 
-void read_header(const std::string& file, const Trace& trace, wii::Recording& recording) {
-  for (const auto& [key, text] : trace.extra) {
-    if (key == "leds") recording.settings.leds = leds_of(file, text);
-    if (key == "fov_deg") {
-      const std::vector<double> fov = numbers(file, key, text);
-      require_count(file, key, fov.size(), 2);
-      recording.settings.fov = {fov[0] * wii::kDegree, fov[1] * wii::kDegree};
-    }
-    if (key == "remote_pose") {
-      const std::vector<double> p = numbers(file, key, text);
-      require_count(file, key, p.size(), 7);
-      recording.X_WR = pose_of(file, p);
-      recording.placed = true;
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> wii_trace_columns() {
@@ -92,10 +75,50 @@ std::vector<std::string> wii_trace_columns() {
   return columns;
 }
 
+wii::SetUp wii_set_up_of(const std::string& name, const std::map<std::string, std::string>& header) {
+  wii::SetUp set_up;
+  for (const auto& [key, text] : header) {
+    if (key == "leds") set_up.leds = leds_of(name, text);
+    if (key == "fov_deg") {
+      const std::vector<double> fov = numbers(name, key, text);
+      require_count(name, key, fov.size(), 2);
+      set_up.fov = wii::FieldOfView{fov[0] * wii::kDegree, fov[1] * wii::kDegree};
+    }
+    if (key == "remote_pose") {
+      const std::vector<double> p = numbers(name, key, text);
+      require_count(name, key, p.size(), 7);
+      set_up.X_WR = pose_of(name, p);
+    }
+  }
+  return set_up;
+}
+
+std::map<std::string, std::string> wii_header_of(const wii::SetUp& set_up) {
+  std::map<std::string, std::string> header;
+  if (set_up.leds) {
+    std::string& text = header["leds"];
+    for (int i = 0; i < set_up.leds->count; ++i) {
+      const Vector3d& p = set_up.leds->p_H[static_cast<std::size_t>(i)];
+      text += fmt::format("{}{} {} {}", i == 0 ? "" : "; ", p.x(), p.y(), p.z());
+    }
+  }
+  if (set_up.fov)
+    header["fov_deg"] =
+        fmt::format("{:.12g} {:.12g}", set_up.fov->horizontal / wii::kDegree, set_up.fov->vertical / wii::kDegree);
+  if (set_up.X_WR) {
+    const Vector3d& p = set_up.X_WR->position;
+    const auto& q = set_up.X_WR->rotation.coeffs();
+    header["remote_pose"] = fmt::format("{} {} {} {} {} {} {}", p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]);
+  }
+  return header;
+}
+
 wii::TrackerSettings wii_settings_of(const std::string& name, const Trace& trace) {
-  wii::Recording recording;
-  read_header(name, trace, recording);
-  return recording.settings;
+  const wii::SetUp set_up = wii_set_up_of(name, trace.extra);
+  wii::TrackerSettings settings;
+  settings.leds = set_up.leds.value_or(settings.leds);
+  settings.fov = set_up.fov.value_or(settings.fov);
+  return settings;
 }
 
 wii::Recording read_wii_recording(Inputs& inputs, const std::string& name, const TraceLimits& limits) {
@@ -104,7 +127,10 @@ wii::Recording read_wii_recording(Inputs& inputs, const std::string& name, const
 
 wii::Recording wii_recording_of(const std::string& file, const Trace& trace) {
   wii::Recording recording;
-  read_header(file, trace, recording);
+  recording.settings = wii_settings_of(file, trace);
+  const wii::SetUp set_up = wii_set_up_of(file, trace.extra);
+  recording.X_WR = set_up.X_WR.value_or(recording.X_WR);
+  recording.placed = set_up.X_WR.has_value();
 
   std::array<std::size_t, kChannelColumns.size()> channel{};
   for (std::size_t i = 0; i < channel.size(); ++i) {

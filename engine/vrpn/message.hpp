@@ -26,6 +26,12 @@ struct Timestamp {
   std::uint32_t microseconds = 0;  ///< 0 to 999999
 };
 
+/// From `begin` to `end`.
+[[nodiscard]] inline std::int64_t microseconds_between(const Timestamp& begin, const Timestamp& end) {
+  const auto total = [](const Timestamp& t) { return std::int64_t{t.seconds} * 1'000'000 + t.microseconds; };
+  return total(end) - total(begin);
+}
+
 struct Message {
   Timestamp time;
   std::int32_t sender = 0;

@@ -58,6 +58,17 @@ Bytes encode(const SensorPose& pose) {
   return payload;
 }
 
+std::optional<SensorPose> decode_pose(View payload) {
+  Reader reader(payload);
+  SensorPose pose;
+  pose.sensor = static_cast<std::int32_t>(reader.uint32());
+  (void)reader.uint32();  // to the alignment of a double
+  for (double& x : pose.placement.position) x = reader.float64();
+  for (double& x : pose.placement.rotation) x = reader.float64();
+  if (!reader.ok()) return {};
+  return pose;
+}
+
 Bytes encode(const Placement& placement) {
   Bytes payload;
   put_placement(payload, placement);

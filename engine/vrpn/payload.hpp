@@ -44,6 +44,8 @@ struct SensorPose {
   Placement placement;
 };
 [[nodiscard]] Bytes encode(const SensorPose& pose);  ///< @pre pose.sensor >= 0
+/// Surplus bytes are ignored; the numbers may be anything.
+[[nodiscard]] std::optional<SensorPose> decode_pose(View payload);
 
 /// kToRoom.
 [[nodiscard]] Bytes encode(const Placement& placement);

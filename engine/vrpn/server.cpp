@@ -114,6 +114,7 @@ void Server::read(Client& client, Timestamp now) {
 void Server::take(Client& client, Timestamp now, const Received& message) {
   if (id_of(names_.senders, message.sender) < 0) return;
   if (message.type == kPing) {
+    if (!client.pinged) client.pinged = now;
     client.connection.send(message.sender, kPong, now, {});
   } else if (request_handler_) {
     request_handler_(message, [&](std::string_view type, View payload) {
@@ -154,7 +155,12 @@ void Server::judge(Client& client, Timestamp now) {
   const Connection& connection = client.connection;
   if (connection.established() && !client.greeted) {
     client.greeted = true;
+    client.greeted_at = now;
     notices_.push_back(fmt::format("{} connected{}", client.address.text(), client.direct ? " directly" : ""));
+  }
+  if (client.greeted && connection.unsent().empty()) {
+    const bool pinged = client.pinged && microseconds_between(*client.pinged, now) >= kSettling;
+    client.ready = client.ready || pinged || microseconds_between(client.greeted_at, now) >= kSilentMax;
   }
   if (client.gone) {
     if (client.greeted) notices_.push_back(fmt::format("{} left", client.address.text()));
@@ -174,6 +180,11 @@ void Server::close_gone() {
 std::size_t Server::clients() const {
   return static_cast<std::size_t>(
       std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c->connection.established(); }));
+}
+
+std::size_t Server::ready_clients() const {
+  return static_cast<std::size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c->ready; }));
 }
 
 std::size_t Server::unsent() const {

@@ -17,8 +17,10 @@ namespace verisim::vrpn {
 class Server {
  public:
   static constexpr std::size_t kClientsMax = 255;
-  static constexpr std::size_t kReadMax = 64 * 1024;  ///< bytes of one client in one turn
-  static constexpr std::uint32_t kGreetingMax = 10;   ///< s that a client may take to send its cookie
+  static constexpr std::size_t kReadMax = 64 * 1024;     ///< bytes of one client in one turn
+  static constexpr std::uint32_t kGreetingMax = 10;      ///< s that a client may take to send its cookie
+  static constexpr std::int64_t kSettling = 100'000;     ///< us after a client's first ping until it is ready
+  static constexpr std::int64_t kSilentMax = 1'000'000;  ///< us after which one that does not ping is ready, too
 
   /// Listens at `at` on TCP and UDP; port 0 takes one that is free for both. Error(io) if the port is taken.
   /// @param devices, types  names that this server sends; ping and pong are added
@@ -39,6 +41,10 @@ class Server {
   [[nodiscard]] const Address& address() const { return address_; }
   /// Number of clients whose cookie was received.
   [[nodiscard]] std::size_t clients() const;
+  /// Number of clients that have pinged one of our devices, or been silent for a second, and taken all that was sent to
+  /// them by TCP, names included, so that no report finds them unprepared: a datagram may overtake the description of
+  /// its type.
+  [[nodiscard]] std::size_t ready_clients() const;
   /// Bytes queued for the slowest client.
   [[nodiscard]] std::size_t unsent() const;
   /// One line for each client that came or went since the last call.
@@ -51,6 +57,9 @@ class Server {
     bool connecting = false;  ///< back to a client that asked by UDP
     bool direct = false;      ///< came by TCP: never uses UDP
     bool greeted = false;     ///< its arrival was reported
+    bool ready = false;       ///< see ready_clients()
+    Timestamp greeted_at = {};
+    std::optional<Timestamp> pinged = {};
     bool gone = false;
     std::uint32_t since = 0;  ///< s
     Connection connection;

@@ -1,5 +1,7 @@
 #include "engine/wii/report_source.hpp"
 
+#include <algorithm>
+
 #include "engine/base/error.hpp"
 #include "engine/wii/validate.hpp"
 
@@ -36,27 +38,22 @@ class RecordedSource final : public ReportSource {
   std::size_t next_ = 0;
 };
 
-RemoteSettings remote_settings(const VirtualSourceOptions& options, const Trajectory& path) {
-  RemoteSettings settings = sensor_case(options.sensor).settings;
-  settings.leds.clear();
-  for (int i = 0; i < options.leds.count; ++i)
-    settings.leds.push_back({.p_H = options.leds.p_H[static_cast<std::size_t>(i)]});
-  settings.outages = path.outages;
-  settings.exchanges = path.exchanges;
-  return settings;
-}
-
 class VirtualSource final : public ReportSource {
  public:
-  VirtualSource(const VirtualSourceOptions& options, const Trajectory& path)
-      : path_(path), remote_(remote_settings(options, path), options.seed, options.name) {
-    settings_.leds = options.leds;
+  VirtualSource(const VirtualSourceOptions& options, const Trajectory& path, const SetUp& set_up)
+      : path_(placed(path, set_up)),
+        latency_(set_up.latency.value_or(0)),
+        remote_(remote_settings(sensor_case(options.sensor).settings, path, set_up.leds.value_or(options.leds), set_up),
+                options.seed, options.name) {
+    settings_.leds = set_up.leds.value_or(options.leds);
     settings_.fov = remote_.settings().fov;
   }
 
   bool next(SensedReport& report) override {
     while (remote_.lost(k_)) ++k_;
-    report = remote_.sense(k_, path_.at(remote_.report_time(k_)));
+    const double t = remote_.report_time(k_);
+    report = remote_.sense(k_, path_.at(std::max(0.0, t - latency_)));
+    if (latency_ > 0) report.X_LH = levelled_pose(path_.at(t));
     ++k_;
     return true;
   }
@@ -64,7 +61,8 @@ class VirtualSource final : public ReportSource {
   [[nodiscard]] double duration() const override { return 0; }
 
  private:
-  const Trajectory& path_;
+  Trajectory path_;
+  double latency_;  ///< s
   VirtualRemote remote_;
   TrackerSettings settings_;
   std::uint64_t k_ = 0;
@@ -79,7 +77,8 @@ std::unique_ptr<ReportSource> make_recorded_source(Recording recording) {
 }
 
 std::unique_ptr<ReportSource> make_virtual_source(const VirtualSourceOptions& options) {
-  return std::make_unique<VirtualSource>(options, trajectory(options.trajectory));
+  const Trajectory& path = options.motion ? *options.motion : trajectory(options.trajectory);
+  return std::make_unique<VirtualSource>(options, path, first_of(options.set_up, path.own));
 }
 
 }  // namespace verisim::wii

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/wii/virtual_remote.hpp"
+#include "engine/wii/trajectories.hpp"
 
 namespace verisim::wii {
 
@@ -42,10 +43,13 @@ struct VirtualSourceOptions {
   std::string name = "remote";         ///< of the random streams
   std::string trajectory = "natural";  ///< (trajectories.hpp)
   std::string sensor = "wiimote";      ///< (validate.hpp, sensor_cases)
-  LedLayout leds = {};
+  LedLayout leds = {};                 ///< unless the set-up or the motion names some
   std::uint64_t seed = 1;
+  SetUp set_up = {};
+  std::optional<Trajectory> motion = {};  ///< recorded, in place of the trajectory
 };
-/// Goes on for ever; report 0 is at time 0 (jitter aside). Error(input) for names that are not known.
+/// Goes on for ever, before the last pose of a motion that ends; report 0 is at time 0 (jitter aside). Error(input) for
+/// names that are not known, settings that no virtual remote takes.
 [[nodiscard]] std::unique_ptr<ReportSource> make_virtual_source(const VirtualSourceOptions& options);
 
 }  // namespace verisim::wii

@@ -131,7 +131,7 @@ std::vector<Trajectory> make_trajectories() {
        {{5, 0, 1}, {10, 0, 1}}},
       {"upside-down", "natural, the remote lies on its buttons", 15, upside_down, {}, {}},
       {"tilted", "remote tilted by 20 and 10 degrees", 10, tilted, {}, {}},
-      {"moving-remote", "the remote sways by 4 degrees", 20, moving_remote, {}, {}},
+      {"moving-remote", "the remote sways by 4 degrees", 20, moving_remote, {}, {}, true},
   };
 }
 
@@ -163,6 +163,7 @@ Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, s
   Trajectory path;
   path.name = name;
   path.what = "recorded";
+  path.of_levelled = true;
   path.duration = t.back() - t.front();
   path.at = [t = std::move(t), X_LH = std::move(X_LH)](double when) {
     const double at = std::clamp(when + t.front(), t.front(), t.back());

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/wii/virtual_remote.hpp"
+#include "engine/wii/set_up.hpp"
 
 namespace verisim::wii {
 
@@ -18,6 +18,9 @@ struct Trajectory {
   std::function<Situation(double)> at;
   std::vector<Outage> outages;
   std::vector<SlotExchange> exchanges;
+  bool moves_remote = false;  ///< then it cannot be put elsewhere
+  bool of_levelled = false;   ///< X_WH is X_LH: the head goes with the remote
+  SetUp own = {};             ///< what a recording says of its set-up
 };
 
 /// The remote in W: at the origin of W, its lens towards +z, pitched (lens up) and rolled (its left side up), without

@@ -6,13 +6,13 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/quantile.hpp"
+#include "engine/wii/sensed_run.hpp"
 #include "engine/wii/validation_figures.hpp"
 
 namespace verisim::wii {
 namespace {
 
-constexpr double kSecondRemoteSide = 0.5;  // m
-constexpr int kTimedBlock = 50;            // updates per clock reading: a reading costs as much as an update
+constexpr int kTimedBlock = 50;  // updates per clock reading: a reading costs as much as an update
 
 std::vector<SensorCase> make_sensor_cases() {
   RemoteSettings noisy;
@@ -38,6 +38,11 @@ std::vector<SensorCase> make_sensor_cases() {
   low_battery.battery = 0.15;
   low_battery.intensity_min = 0.05;
 
+  RemoteSettings shaky = noisy;
+  shaky.accelerometer_noise = 0.01;
+  RemoteSettings coarse = noisy;
+  coarse.accelerometer_bits = 8;
+
   RemoteSettings lamp = noisy;
   lamp.slot_rule = SlotRule::first_free;
   lamp.lamps = {{.p_W = {0.35, 0.3, 1.6}, .begin = 1}};
@@ -48,6 +53,8 @@ std::vector<SensorCase> make_sensor_cases() {
       {"low-sensitivity", "wiimote with half of the subpixels and 8 bit accelerometer", low_sensitivity},
       {"low-battery", "wiimote with LEDs at 15 % of their power", low_battery},
       {"lamp", "noisy with a lamp in view from 1 s on", lamp},
+      {"accelerometer", "noisy, and the accelerometer too: 0.01 g", shaky},
+      {"8-bit", "noisy with an accelerometer of 8 bits: steps of 0.04 g", coarse},
   };
 }
 
@@ -60,44 +67,6 @@ Contender contender(std::string_view name, Trackers known) {
   const bool triangle = name.ends_with("/3");
   const TrackerEntry& entry = find_tracker(triangle ? name.substr(0, name.size() - 2) : name, known);
   return {entry, triangle ? LedLayout::triangle() : entry.leds};
-}
-
-/// Where the second remote stands for a tracker that needs two, in coordinates of the first.
-Pose second_remote() {
-  return {{kSecondRemoteSide, 0, 0}, rotation_from_vector({0, -pinned::atan2(kSecondRemoteSide, 1.2), 0})};
-}
-
-RemoteSettings sensor_settings(const SensorCase& sensor, const Trajectory& path, const LedLayout& leds) {
-  RemoteSettings s = sensor.settings;
-  s.leds.clear();
-  for (int i = 0; i < leds.count; ++i) s.leds.push_back(Led{leds.p_H[static_cast<std::size_t>(i)]});
-  s.outages = path.outages;
-  s.exchanges = path.exchanges;
-  return s;
-}
-
-/// The whole run as the trackers will see it, so that only they are timed.
-struct Sensed {
-  SensedReport report;
-  int remote = 0;
-};
-std::vector<Sensed> sense_all(const RemoteSettings& settings, const Trajectory& path, int remotes, std::uint64_t seed) {
-  VirtualRemote first(settings, seed, path.name + "/first");
-  VirtualRemote second(settings, seed, path.name + "/second");
-  std::vector<Sensed> all;
-  const auto count = static_cast<std::uint64_t>(path.duration * settings.rate);
-  for (std::uint64_t k = 0; k < count; ++k) {
-    if (remotes == 2) {
-      Situation s = path.at(second.report_time(k));
-      s.X_WR = s.X_WR * second_remote();
-      const SensedReport report = second.sense(k, s);
-      if (!second.lost(k)) all.push_back({report, 1});
-    }
-    const SensedReport report = first.sense(k, path.at(first.report_time(k)));
-    if (!first.lost(k)) all.push_back({report, 0});
-  }
-  std::stable_sort(all.begin(), all.end(), [](const Sensed& a, const Sensed& b) { return a.report.t < b.report.t; });
-  return all;
 }
 
 double median_update_ns(Tracker& tracker, const std::vector<Sensed>& all) {
@@ -132,11 +101,16 @@ ValidationRow validate_one(const std::string& tracker, const Trajectory& path, c
                            const ValidationOptions& options, std::vector<ErrorSample>* history) {
   const Contender who = contender(tracker, options.known);
   TrackerSettings settings = options.tracker;
-  if (settings.leds.count < who.leds.count) settings.leds = who.leds;
-  settings.fov = sensor.settings.fov;
+  const SetUp set_up = first_of(options.set_up, path.own);
+  if (set_up.leds)
+    settings.leds = *set_up.leds;
+  else if (settings.leds.count < who.leds.count)
+    settings.leds = who.leds;
+  const RemoteSettings remote = remote_settings(sensor.settings, path, settings.leds, set_up);
+  settings.fov = remote.fov;
   if (who.entry.remotes == 2) settings.X_R1R2 = second_remote();
   const std::vector<Sensed> all =
-      sense_all(sensor_settings(sensor, path, settings.leds), path, who.entry.remotes, options.seed);
+      sense_run(remote, placed(path, set_up), who.entry.remotes, options.seed, set_up.latency.value_or(0));
 
   const std::unique_ptr<Tracker> judged = make_tracker(who.entry.name, settings, options.known);
   ValidationFigures figures;
@@ -155,7 +129,24 @@ ValidationRow validate_one(const std::string& tracker, const Trajectory& path, c
   return row;
 }
 
+namespace {
+
+ValidationRow validate_seeds(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
+                             const ValidationOptions& options) {
+  ValidationOptions one = options;
+  std::vector<ValidationRow> rows;
+  for (int k = 0; k < options.seeds; ++k) {
+    one.seed = options.seed + static_cast<std::uint64_t>(k);
+    rows.push_back(validate_one(tracker, path, sensor, one));
+    one.measure_time = false;  // once is enough
+  }
+  return options.seeds == 1 ? rows.front() : mean_of_seeds(rows);
+}
+
+}  // namespace
+
 std::vector<ValidationRow> validate(const ValidationOptions& options) {
+  VERISIM_ASSERT(options.seeds >= 1);
   std::vector<std::string> trackers = options.trackers;
   if (trackers.empty()) {
     trackers = tracker_names(options.known);
@@ -172,7 +163,7 @@ std::vector<ValidationRow> validate(const ValidationOptions& options) {
   for (const std::string& sensor : sensors)
     for (const Trajectory& path : paths)
       for (const std::string& tracker : trackers)
-        rows.push_back(validate_one(tracker, path, sensor_case(sensor), options));
+        rows.push_back(validate_seeds(tracker, path, sensor_case(sensor), options));
   return rows;
 }
 

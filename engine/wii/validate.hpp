@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/wii/trajectories.hpp"
@@ -14,7 +15,7 @@ struct SensorCase {
   std::string what;
   RemoteSettings settings;  ///< its leds, outages and exchanges are replaced by the run's
 };
-/// ideal, noisy, wiimote, low-sensitivity, low-battery, lamp.
+/// ideal, noisy, wiimote, low-sensitivity, low-battery, lamp, accelerometer, 8-bit.
 [[nodiscard]] const std::vector<SensorCase>& sensor_cases();
 /// Error(input) for a name that is not one of them.
 [[nodiscard]] const SensorCase& sensor_case(const std::string& name);
@@ -41,14 +42,21 @@ struct ValidationRow {
   /// right, above if it promises too much. Errors repeat from report to report (rounding stands still with the head),
   /// so the chi-square bounds count only as many independent samples as the autocorrelation of the series leaves.
   double nees = 0;
-  double nees_lower = 0;      ///< 2.5 % bound of the mean: below it the covariance is larger than the errors need
-  double nees_upper = 0;      ///< 97.5 % bound of the mean
-  double within_95 = 0;       ///< fraction of errors inside their own 95 % ellipsoid
-  bool consistent = false;    ///< nees <= nees_upper: never too sure
-  int reacquired = 0;         ///< reports that said so
-  double longest_return = 0;  ///< s from an LED pair's return to the next valid report, worst
-  double update_ns = 0;       ///< wall clock per update, median of blocks; not reproducible
+  double nees_lower = 0;        ///< 2.5 % bound of the mean: below it the covariance is larger than the errors need
+  double nees_upper = 0;        ///< 97.5 % bound of the mean
+  double within_95 = 0;         ///< fraction of errors inside their own 95 % ellipsoid
+  bool consistent = false;      ///< nees <= nees_upper: never too sure
+  double orientation_nees = 0;  ///< the same of the orientation
+  double orientation_nees_lower = 0;  ///< likewise
+  double orientation_nees_upper = 0;  ///< likewise
+  int reacquired = 0;                 ///< reports that said so
+  double longest_return = 0;          ///< s from an LED pair's return to the next valid report, worst
+  double update_ns = 0;               ///< wall clock per update, median of blocks; not reproducible
+  int seeds = 1;                      ///< figures are means over so many; the largest are the largest of all
+  std::pair<double, double> position_rms_95 = {};     ///< m, 95 % interval of its mean over the seeds (Student's t)
+  std::pair<double, double> orientation_rms_95 = {};  ///< deg
 };
+/// What a tracker that states no covariance leaves unknown is NaN: nees, within_95 and their bounds.
 
 struct ValidationOptions {
   std::vector<std::string> trackers;      ///< empty: all, and NAME/3 of those that say so (TrackerEntry)
@@ -56,6 +64,8 @@ struct ValidationOptions {
   std::vector<std::string> sensors;       ///< empty: ideal and wiimote
   Trackers known = wii::trackers();       ///< the table that the names above are looked up in
   std::uint64_t seed = 1;
+  int seeds = 1;                     ///< seed, seed + 1, …: rows are their means
+  SetUp set_up = {};                 ///< of every run
   TrackerSettings tracker;           ///< of every tracker; each adds the LEDs and the second remote that it needs
   std::vector<Trajectory> recorded;  ///< further motions; alone, if no others are named
   bool measure_time = true;
@@ -73,6 +83,8 @@ struct ErrorSample {
 /// One that needs two remotes gets a second 0.5 m beside the first, turned towards the head.
 [[nodiscard]] ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
                                          const ValidationOptions& options, std::vector<ErrorSample>* history = nullptr);
+/// The mean of one row's figures over several seeds, with intervals. @pre there are two or more, of one combination
+[[nodiscard]] ValidationRow mean_of_seeds(const std::vector<ValidationRow>& rows);
 /// Every combination, trackers innermost: about 1 ms per simulated second each. Error(input) for a name that is not
 /// known.
 [[nodiscard]] std::vector<ValidationRow> validate(const ValidationOptions& options);

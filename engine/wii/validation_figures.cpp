@@ -58,6 +58,17 @@ double chi_square_point(double n, double z) {
   return cube_root * cube_root * cube_root;
 }
 
+/// The mean of a series of normalised squares, and what it may be by chance if they are chi-square(3) / 3.
+struct Consistency {
+  double mean, lower, upper;
+};
+Consistency consistency_of(const std::vector<double>& nees) {
+  const double mean = mean_of(nees);
+  if (std::isnan(mean)) return {mean, mean, mean};
+  const double samples = 3 * independent_samples(nees);
+  return {mean, chi_square_point(samples, -kNormal975), chi_square_point(samples, kNormal975)};
+}
+
 }  // namespace
 
 void ValidationFigures::add(const SensedReport& sensed, const Report& report) {
@@ -99,6 +110,8 @@ void ValidationFigures::add_valid(const SensedReport& sensed, const Report& repo
       vector_from_rotation((report.pose.rotation * sensed.X_LH.rotation.conjugate()).normalized()));
   const Matrix3d covariance = report.covariance.topLeftCorner<3, 3>();
   nees_.push_back(e.dot(covariance.ldlt().solve(e)) / 3);
+  const Matrix3d turned = report.covariance.bottomRightCorner<3, 3>();
+  orientation_nees_.push_back(orientation_errors_.back().dot(turned.ldlt().solve(orientation_errors_.back())) / 3);
   error_along_velocity_ += e.dot(velocity);
   velocity_square_ += velocity.squaredNorm();
 }
@@ -120,13 +133,18 @@ ValidationRow ValidationFigures::result() const {
   row.availability = pair_in_view_ > 0 ? static_cast<double>(valid_in_view_) / pair_in_view_ : 1;
   row.false_validity = blind_ > 0 ? static_cast<double>(valid_blind_) / blind_ : 0;
   row.latency = velocity_square_ > 0 ? -error_along_velocity_ / velocity_square_ : 0;
-  row.nees = mean_of(nees_);
-  const double samples = 3 * independent_samples(nees_);
-  row.nees_lower = chi_square_point(samples, -kNormal975);
-  row.nees_upper = chi_square_point(samples, kNormal975);
+  const Consistency position = consistency_of(nees_);
+  row.nees = position.mean;
+  row.nees_lower = position.lower;
+  row.nees_upper = position.upper;
   const auto inside = std::count_if(nees_.begin(), nees_.end(), [](double n) { return 3 * n <= kChiSquare95; });
   row.within_95 = nees_.empty() ? 0 : static_cast<double>(inside) / static_cast<double>(nees_.size());
+  if (std::isnan(row.nees)) row.within_95 = row.nees;  // no covariance
   row.consistent = row.nees <= row.nees_upper;
+  const Consistency orientation = consistency_of(orientation_nees_);
+  row.orientation_nees = orientation.mean;
+  row.orientation_nees_lower = orientation.lower;
+  row.orientation_nees_upper = orientation.upper;
   return row;
 }
 

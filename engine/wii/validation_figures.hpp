@@ -21,6 +21,7 @@ class ValidationFigures {
   std::vector<Vector3d> position_errors_;     ///< m
   std::vector<Vector3d> orientation_errors_;  ///< rad
   std::vector<double> nees_;                  ///< of the position, over 3
+  std::vector<double> orientation_nees_;      ///< of the orientation, over 3
   double error_along_velocity_ = 0;
   double velocity_square_ = 0;
   int pair_in_view_ = 0;

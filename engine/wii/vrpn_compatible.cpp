@@ -24,7 +24,7 @@ Quaterniond smallest_rotation_to_z(const Vector3d& from) {
   if (!(length > 0)) return Quaterniond::Identity();
   const Vector3d unit = from / length;
   const double twice_w_square = 1 + unit.z();
-  if (twice_w_square < 1e-12) return {0, 1, 0, 0};  // opposite: any half turn across z
+  if (twice_w_square < 1e-12) return {0, 0, 1, 0};  // opposite: upstream's quaternion library turns about y
   return Quaterniond{twice_w_square, unit.y(), -unit.x(), 0}.normalized();
 }
 

@@ -68,7 +68,7 @@ HOME_OF_LIBRARY = {
                              "engine/tradeoff/"],
     r"sqlite3\.h": ["engine/batch/"],
     r"boost/math/(distributions|special_functions)/\w+\.hpp": ["engine/compare/", "engine/batch/"],
-    r"sleef\.h|xxhash\.h|openssl/sha\.h": ["engine/base/"],
+    r"sleef\.h|xxhash\.h|xxh_x86dispatch\.h|openssl/sha\.h": ["engine/base/"],
     # The operating system's. Sockets: a network is vrpn's alone; the CAD child process is spoken to through a pair.
     r"(netinet/(in|tcp)|arpa/inet|netdb)\.h": ["engine/vrpn/socket.cpp"],
     r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp", "firmware_sim/avr/avr_board.cpp"],
@@ -93,8 +93,8 @@ HOME_OF_LIBRARY = {
 # What a folder's CMakeLists.txt may link besides the project's own: the libraries above, by the names CMake knows.
 HOME_OF_LINKED = {
     "verisim_protocol": ["engine/robot"], "verisim_firmware_host": ["engine/robot"],
-    "verisim_flags": EVERYWHERE, "verisim_small_arrays": ["engine/exact"], "Threads::Threads": EVERYWHERE,
-    "Eigen3::Eigen": ["engine/base"], "fmt::fmt": ["engine/base"], "sleef": ["engine/base"],
+    "verisim_flags": EVERYWHERE, "verisim_off_the_loop": EVERYWHERE, "verisim_small_arrays": ["engine/exact"], "Threads::Threads": EVERYWHERE,
+    "Eigen3::Eigen": ["engine/base"], "fmt::fmt": ["engine/base"], "sleef": ["engine/base"], "xxhash": ["engine/base"],
     "OpenSSL::Crypto": ["engine/base"], "CGAL::CGAL": ["engine/geometry"],
     "hwy::hwy": ["engine/contact", "engine/constraint", "engine/exact"], "fcl": ["engine/contact"],
     "${HDF5_C_LIBRARIES}": ["engine/record"], "nlohmann_json::nlohmann_json": ["engine/script", "engine/session", "engine/cli", "engine/batch", "engine/compare",
@@ -117,6 +117,7 @@ MAY_READ_THE_CLOCK = {
     "engine/session/stop_watch.hpp": "tells how long something took",
     "engine/session/run_loop.cpp": "paces a run and times its frames",
     "engine/cli/wire_clock.cpp": "dates messages",
+    "engine/cli/line_program.cpp": "ends a program that does not answer",
 }
 
 MAY_CALL_THE_C_LIBRARY = {

@@ -1,4 +1,4 @@
-#include "engine/reproduce/statistics.hpp"
+#include "engine/base/statistics.hpp"
 
 #include <cmath>
 #include <numeric>
@@ -6,7 +6,7 @@
 
 #include "engine/base/error.hpp"
 
-namespace verisim::reproduce {
+namespace verisim {
 namespace {
 
 /// 97.5 % point of Student's t with this many degrees of freedom: Abramowitz and Stegun 26.7.5. Within 0.3 % from four
@@ -46,4 +46,4 @@ Estimate ratio_of(std::span<const double> a, std::span<const double> b) {
   return {ratio, mean_of(linearized).interval};
 }
 
-}  // namespace verisim::reproduce
+}  // namespace verisim

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-namespace verisim::reproduce {
+namespace verisim {
 
 struct Estimate {
   double value = 0;
@@ -18,4 +18,4 @@ struct Estimate {
 /// sum(b) is 0. @pre as many of a as of b, two or more
 [[nodiscard]] Estimate ratio_of(std::span<const double> a, std::span<const double> b);
 
-}  // namespace verisim::reproduce
+}  // namespace verisim

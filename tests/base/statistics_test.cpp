@@ -1,4 +1,4 @@
-#include "engine/reproduce/statistics.hpp"
+#include "engine/base/statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "engine/base/random.hpp"
 #include "tests/support/broken.hpp"
 
-namespace verisim::reproduce::statistics_test {
+namespace verisim::statistics_test {
 namespace {
 
 TEST(Statistics, MeanAndIntervalOfAWorkedExample) {
@@ -72,4 +72,4 @@ TEST(StatisticsDeathTest, NeedTwoSamplesOrPairs) {
 }
 
 }  // namespace
-}  // namespace verisim::reproduce::statistics_test
+}  // namespace verisim::statistics_test

@@ -1,0 +1,117 @@
+#include "engine/cli/wii_wire.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
+#include "engine/cli/wire_clock.hpp"
+#include "engine/session/interrupts.hpp"
+#include "engine/session/stop_watch.hpp"
+#include "engine/vrpn/client.hpp"
+#include "engine/vrpn/payload.hpp"
+#include "engine/vrpn/server.hpp"
+
+namespace verisim::cli {
+namespace {
+
+constexpr int kWireWait = 5;  // ms
+
+/// Both ends of the wire to the tracker elsewhere.
+class OtherSide {
+ public:
+  OtherSide(const std::string& remote_name, const WireOptions& o)
+      : options_(o),
+        name_(remote_name),
+        server_(vrpn::resolve(o.host, o.port), {o.analog}, {std::string(vrpn::kAnalog)}),
+        client_(vrpn::parse_remote_name(remote_name), !o.no_udp) {
+    std::fprintf(stderr, "serving %s at %s; waiting for %s\n", o.analog.c_str(), server_.address().text().c_str(),
+                 remote_name.c_str());
+  }
+
+  void wait() {
+    const StopWatch watch;
+    while (server_.ready_clients() == 0 || !client_.connected()) {
+      turn(kWireWait);
+      if (watch.seconds() > options_.patience)
+        fail(ErrorKind::io, "{}: {} within {} s; start it so that it reads {}@{}", name_,
+             client_.connected() ? "nobody asked for the channels" : "did not answer", options_.patience,
+             options_.analog, server_.address().text());
+    }
+  }
+
+  std::vector<wii::Report> play(const std::vector<wii::SensedReport>& samples) {
+    begin_ = wire_time();
+    const double shift = samples.front().t;
+    const StopWatch watch;
+    for (const wii::SensedReport& s : samples) {
+      wait_until(watch, s.t - shift);
+      server_.publish(options_.analog, vrpn::kAnalog, later(begin_, std::llround((s.t - shift) * 1e6)),
+                      vrpn::encode_analog(s.channels));
+      turn(0);
+    }
+    wait_until(watch, samples.back().t - shift + options_.linger);
+    for (wii::Report& r : reports_) r.t += shift;
+    return std::move(reports_);
+  }
+
+ private:
+  void wait_until(const StopWatch& watch, double t) {
+    for (double left = t - watch.seconds(); left > 0; left = t - watch.seconds())
+      turn(std::min(kWireWait, static_cast<int>(std::ceil(left * 1000))));
+  }
+
+  void turn(int wait_ms) {
+    if (was_interrupted()) fail(ErrorKind::interrupted, "wii judge: interrupted");
+    server_.turn(wire_time(), 0);
+    client_.turn(wire_time(), wait_ms, [&](const vrpn::Received& message) { take(message); });
+    for (const std::string& notice : server_.take_notices()) std::fprintf(stderr, "%s\n", notice.c_str());
+  }
+
+  void take(const vrpn::Received& message) {
+    if (message.type != vrpn::kPose) return;
+    const auto pose = vrpn::decode_pose(message.payload);
+    if (!pose || pose->sensor != 0) return;
+    wii::Report r;
+    r.t = static_cast<double>(microseconds_between(begin_, message.time)) * 1e-6;
+    r.valid = r.news = true;
+    const auto& [p, q] = pose->placement;
+    r.pose = {{p[0], p[1], p[2]}, Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
+    r.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (!r.pose.position.allFinite() || !r.pose.rotation.coeffs().allFinite()) return;
+    if (!reports_.empty() && r.t < reports_.back().t) return;  // overtaken by a later one
+    if (!reports_.empty() && r.t == reports_.back().t)
+      reports_.back() = r;
+    else
+      reports_.push_back(r);
+  }
+
+  const WireOptions& options_;
+  std::string name_;
+  vrpn::Server server_;
+  vrpn::Client client_;
+  vrpn::Timestamp begin_;
+  std::vector<wii::Report> reports_;
+};
+
+}  // namespace
+
+void WireOptions::add(CLI::App& command) {
+  command.add_option("--channels", analog, "Name of the analog device that the other side reads")->group("Wire");
+  command.add_option("--serve-host", host, "Address to serve it at")->group("Wire");
+  command.add_option("--serve-port", port, "Port to serve it at, TCP and UDP; 0 takes a free one and says which")
+      ->group("Wire");
+  command.add_flag("--no-udp", no_udp, "Have poses sent by TCP")->group("Wire");
+}
+
+std::vector<wii::Report> hear_tracker(const std::string& remote_name, const WireOptions& options,
+                                      const std::vector<wii::SensedReport>& samples) {
+  const InterruptScope until_it_is_judged;
+  OtherSide other(remote_name, options);
+  other.wait();
+  std::vector<wii::Report> reports = other.play(samples);
+  if (reports.empty()) fail(ErrorKind::io, "{}: sent no pose of sensor 0 while the remote played", remote_name);
+  return reports;
+}
+
+}  // namespace verisim::cli

@@ -1,0 +1,34 @@
+// Plays the virtual remote over VRPN and hears what a tracker elsewhere makes of it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/vrpn/message.hpp"
+#include "engine/vrpn/socket.hpp"
+#include "engine/wii/tracker.hpp"
+#include "engine/wii/virtual_remote.hpp"
+
+namespace verisim::cli {
+
+struct WireOptions {
+  std::string analog = "WiiMote0";
+  std::string host = "127.0.0.1";
+  std::uint16_t port = vrpn::kDefaultPort;
+  double patience = 10;  ///< s for the other side to come
+  double linger = 0.5;   ///< s after the last sample in which a report may still come
+  bool no_udp = false;
+
+  /// --channels, --serve-host, --serve-port, --wire-patience.
+  void add(CLI::App& command);
+};
+
+/// Serves the samples' channels at their own pace once the other side has connected to them and its tracker answers;
+/// takes the tracker's poses (sensor 0), their times counted from the begin of the samples. VRPN tells no validity: a
+/// pose is valid. Of poses with equal times the last one counts. Progress on stderr. Error(io) if the other side does
+/// not come in time, Error(interrupted).
+[[nodiscard]] std::vector<wii::Report> hear_tracker(const std::string& remote_name, const WireOptions& options,
+                                                    const std::vector<wii::SensedReport>& samples);
+
+}  // namespace verisim::cli
