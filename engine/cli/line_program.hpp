@@ -1,8 +1,6 @@
 // A program that answers lines: one on its stdin, one on its stdout.
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
 
 namespace verisim::cli {
@@ -23,7 +21,7 @@ class LineProgram {
   [[noreturn]] void complain(const std::string& what);
 
   std::string command_;
-  pid_t pid_ = -1;
+  int pid_ = -1;
   int to_ = -1;
   int from_ = -1;
   std::string received_;

@@ -178,17 +178,51 @@ std::string written_options(const CLI::App& command) {
   return text;
 }
 
-void add_synth(CLI::App& trace, int& exit_code) {
-  struct Options {
-    std::string kind;
-    std::string path;
-    OutOptions out;
-    std::vector<std::string> sets;
-    VirtualRunOptions wii;
-    std::uint64_t seed = 1;
+struct SynthOptions {
+  std::string kind;
+  std::string path;
+  OutOptions out;
+  std::vector<std::string> sets;
+  VirtualRunOptions wii;
+  std::uint64_t seed = 1;
+};
+
+void synth(SynthOptions& o, const CLI::App& command) {
+  std::map<std::string, double> parameters;
+  for (const auto& [key, value] : split_pairs("--set", o.sets)) {
+    char* end = nullptr;
+    parameters[key] = std::strtod(value.c_str(), &end);
+    if (end == value.c_str() || *end != '\0')
+      fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
+  }
+  std::vector<std::string> kinds = synthesizers();
+  kinds.emplace_back("encoder");
+  kinds.emplace_back("wii");
+  if (std::find(kinds.begin(), kinds.end(), o.kind) == kinds.end()) {
+    const std::string near = nearest_name(o.kind, kinds);
+    fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o.kind,
+         near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
+  }
+  check_options_of_kind(command, o.kind);
+  std::vector<FileIdentity> inputs;
+  const auto make = [&] {
+    if (o.kind == "encoder") return encoder_trace(o.path.empty() ? "straight" : o.path, parameters);
+    if (o.kind != "wii") return synthesize(o.kind, parameters, o.seed);
+    o.wii.seed = o.seed;
+    return wii_trace_of(run_virtually(o.wii, inputs), written_options(command));
   };
+  if (o.kind == "wii") {  // what is read is known only then
+    const Trace made = make();
+    write_trace(check_output({o.out.path, OutputKind::trace, o.out.force, {}}, inputs), made);
+  } else {
+    const std::string out = check_output({o.out.path, OutputKind::trace, o.out.force, {}});
+    write_trace(out, make());
+  }
+}
+
+void add_synth(CLI::App& trace, int& exit_code) {
   auto* command = trace.add_subcommand("synth", "Makes a trace from a formula");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SynthOptions>();
   command
       ->add_option(
           "KIND", o->kind,
@@ -209,36 +243,7 @@ void add_synth(CLI::App& trace, int& exit_code) {
       "          verisim trace synth wii --trajectory natural --sensor wiimote -o head.csv\n"
       "          verisim trace synth encoder --path square -o square.csv --set length=2");
   command->callback([=, &exit_code] {
-    std::map<std::string, double> parameters;
-    for (const auto& [key, value] : split_pairs("--set", o->sets)) {
-      char* end = nullptr;
-      parameters[key] = std::strtod(value.c_str(), &end);
-      if (end == value.c_str() || *end != '\0')
-        fail(ErrorKind::usage, "--set {}={}: {} is not a number", key, value, value);
-    }
-    std::vector<std::string> kinds = synthesizers();
-    kinds.emplace_back("encoder");
-    kinds.emplace_back("wii");
-    if (std::find(kinds.begin(), kinds.end(), o->kind) == kinds.end()) {
-      const std::string near = nearest_name(o->kind, kinds);
-      fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o->kind,
-           near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
-    }
-    check_options_of_kind(*command, o->kind);
-    std::vector<FileIdentity> inputs;
-    const auto make = [&] {
-      if (o->kind == "encoder") return encoder_trace(o->path.empty() ? "straight" : o->path, parameters);
-      if (o->kind != "wii") return synthesize(o->kind, parameters, o->seed);
-      o->wii.seed = o->seed;
-      return wii_trace_of(run_virtually(o->wii, inputs), written_options(*command));
-    };
-    if (o->kind == "wii") {  // what is read is known only then
-      const Trace made = make();
-      write_trace(check_output({o->out.path, OutputKind::trace, o->out.force, {}}, inputs), made);
-    } else {
-      const std::string out = check_output({o->out.path, OutputKind::trace, o->out.force, {}});
-      write_trace(out, make());
-    }
+    synth(*o, *command);
     exit_code = 0;
   });
 }

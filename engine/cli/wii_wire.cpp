@@ -35,8 +35,10 @@ class OtherSide {
       turn(kWireWait);
       if (watch.seconds() > options_.patience)
         fail(ErrorKind::io, "{}: {} within {} s; start it so that it reads {}@{}", name_,
-             client_.connected() ? "nobody asked for the channels" : "did not answer", options_.patience,
-             options_.analog, server_.address().text());
+             !client_.connected()     ? "did not answer"
+             : server_.clients() == 0 ? "nobody asked for the channels"
+                                      : "whoever came did not take the channels",
+             options_.patience, options_.analog, server_.address().text());
     }
   }
 

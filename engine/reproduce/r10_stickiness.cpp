@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "engine/base/error.hpp"
+#include "engine/base/statistics.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/reproduce/chart.hpp"
 #include "engine/reproduce/reproductions.hpp"
-#include "engine/base/statistics.hpp"
 
 namespace verisim::reproduce {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "engine/base/error.hpp"
+#include "engine/base/statistics.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
-#include "engine/base/statistics.hpp"
 
 namespace verisim::reproduce {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "engine/base/error.hpp"
-#include "engine/reproduce/reproductions.hpp"
 #include "engine/base/statistics.hpp"
+#include "engine/reproduce/reproductions.hpp"
 
 namespace verisim::reproduce {
 namespace {

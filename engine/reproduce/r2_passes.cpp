@@ -2,9 +2,9 @@
 // 8.5), over seeds, clearances and voxel sizes. The dissertation counted one operator once.
 #include <fmt/format.h>
 
+#include "engine/base/statistics.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/reproduce/reproductions.hpp"
-#include "engine/base/statistics.hpp"
 
 namespace verisim::reproduce {
 namespace {

@@ -65,7 +65,8 @@ TEST_P(RoundSides, ThatCrossAreAsFarApartAsTheirNearestPoints) {
     Draw draw(seed);
     const double gap = draw.between(-0.0003, 0.0003);
     const double z1 = draw.between(-0.02, 0.02);
-    const Pose X = beside(first, z1, second, draw.between(-0.02, 0.02), gap, draw.between(0.4, 2.7));
+    const double turn = draw.between(0.4, 2.7);
+    const Pose X = beside(first, z1, second, draw.between(-0.02, 0.02), gap, turn);
     const Pose around{Vector3d::Zero(), Quaterniond(Eigen::AngleAxisd(draw.between(-3, 3), Vector3d::UnitZ()))};
     ASSERT_NEAR(pair.gap_at(around * X, kMargin), gap, kRounding);
     const auto& rows = pair.link.rows().rows();

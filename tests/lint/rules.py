@@ -55,7 +55,7 @@ ON_THE_CONTROLLER = ["firmware_sim/firmware/", "firmware_sim/protocol/", "firmwa
 EVERYWHERE = [""]
 HOME_OF_LIBRARY = {
     r"[a-z_0-9]+": EVERYWHERE,  # C++'s own; the clock's and the random numbers' have rules of their own
-    r"Eigen/(Core|Geometry|LU|Cholesky|Eigenvalues)|fmt/(format|ranges)\.h": EVERYWHERE,
+    r"Eigen/(Core|Geometry|LU|Cholesky|Eigenvalues|SVD)|fmt/(format|ranges)\.h": EVERYWHERE,
     r"hdf5\.h": ["engine/record/"],
     r"lua\.hpp": ["engine/script/"],
     r"\w+\.hxx|assimp/.*": ["engine/geometry/cad/"],
@@ -69,17 +69,19 @@ HOME_OF_LIBRARY = {
     r"sqlite3\.h": ["engine/batch/"],
     r"boost/math/(distributions|special_functions)/\w+\.hpp": ["engine/compare/", "engine/batch/"],
     r"sleef\.h|xxhash\.h|xxh_x86dispatch\.h|openssl/sha\.h": ["engine/base/"],
-    # The operating system's. Sockets: a network is vrpn's alone; the CAD child process is spoken to through a pair.
+    # The operating system's. Sockets: a network is vrpn's alone; child processes are spoken to through a pair.
     r"(netinet/(in|tcp)|arpa/inet|netdb)\.h": ["engine/vrpn/socket.cpp"],
-    r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp", "firmware_sim/avr/avr_board.cpp"],
-    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp", "engine/batch/",
+    r"sys/socket\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp", "engine/cli/line_program.cpp",
+                       "firmware_sim/avr/avr_board.cpp"],
+    r"poll\.h": ["engine/vrpn/", "engine/geometry/cad_client.cpp", "engine/cli/streams.cpp", "engine/cli/line_program.cpp",
+                  "engine/batch/",
                   "firmware_sim/avr/avr_board.cpp"],
     r"(unistd|fcntl|sys/(stat|mman|resource))\.h": ["engine/vrpn/socket.cpp", "engine/geometry/cad_client.cpp",
                                                     "engine/geometry/cad/", "engine/record/", "engine/cli/", "engine/session/",
                                                     "engine/base/user_file.cpp", "engine/base/standard_streams.cpp",
                                                     "engine/batch/workers.cpp", "firmware_sim/avr/"],
     r"(spawn|sys/(wait|prctl))\.h": ["engine/geometry/cad_client.cpp", "engine/geometry/cad/", "engine/batch/workers.cpp",
-                                     "engine/cli/program_runs.cpp", "engine/cli/tradeoff_peers.cpp",
+                                     "engine/cli/program_runs.cpp", "engine/cli/tradeoff_peers.cpp", "engine/cli/line_program.cpp",
                                      "firmware_sim/avr/avr_board.cpp"],
     r"link\.h": ["engine/base/own_file.cpp"],
     r"pybind11/\w+\.h": ["engine/python/"],
