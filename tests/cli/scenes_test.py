@@ -38,7 +38,7 @@ class Scenes(ProgramTest):
         """Every approach lands on the rim. What guides the pin in there must not be taken for friction: if it is, the
         pin glides off and falls over."""
         depth = {"off": [], "restore": []}
-        for seed in "14" if SANITIZED else "123456":
+        for seed in "1" if SANITIZED else "123456":
             fit = ["--set", "clearance=mm(1)", "--set", "voxelsize=mm(2)", "--duration", "4", "--seed", seed]
             off, restore = (self.scene("peg_in_hole", *fit, "--set", "hybrid=" + h) for h in depth)
             self.assertEqual(restore["measures"]["passes"]["value"], off["measures"]["passes"]["value"], seed)
@@ -51,7 +51,7 @@ class Scenes(ProgramTest):
     def test_a_hole_that_is_misjudged_is_found_by_those_who_search(self):
         """20 mm beside a hole of 2 mm of clearance: 30 seeds of the whole trial are in the scenario's notes."""
         for seed in "1" if SANITIZED else "34":
-            for strategy in ("straight", "tilt", "spiral"):
+            for strategy in ("tilt",) if SANITIZED else ("straight", "tilt", "spiral"):
                 s = self.scene("peg_in_hole", "--set", "strategy=" + strategy, "--set", "approach=0.02", "--set", "clearance=0.002",
                                "--set", "hybrid=exact", "--duration", "13", "--seed", seed)
                 passes = s["measures"]["passes"]["value"]
