@@ -40,12 +40,17 @@ LineProgram::LineProgram(const std::string& command) : command_(command) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, child_in, STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, child_out, STDOUT_FILENO);
+  posix_spawnattr_t attributes;  // a group of its own: what the shell starts ends with it
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
   std::string text = command;
   char shell[] = "sh";
   char option[] = "-c";
   char* const arguments[] = {shell, option, text.data(), nullptr};
-  const int failure = posix_spawn(&pid_, "/bin/sh", &actions, nullptr, arguments, environ);
+  const int failure = posix_spawn(&pid_, "/bin/sh", &actions, &attributes, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
   close(child_in);
   close(child_out);
   if (failure == 0) return;
@@ -61,7 +66,7 @@ LineProgram::~LineProgram() {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  kill(pid_, SIGKILL);
+  kill(-pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
 }
 

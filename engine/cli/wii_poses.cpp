@@ -71,7 +71,7 @@ class Row {
   void read_covariance(Matrix6d& c) const {
     if (has("c00")) {
       for (int i = 0; i < 6; ++i)
-        for (int j = i; j < 6; ++j) c(i, j) = c(j, i) = at(full_name(i, j));
+        for (int j = 0; j < 6; ++j) c(i, j) = at(full_name(i, j));
     } else if (has("cpx")) {
       c.setZero();
       for (int i = 0; i < 6; ++i) c(i, i) = at(kVariances[static_cast<std::size_t>(i)]);

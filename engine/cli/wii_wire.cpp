@@ -44,6 +44,7 @@ class OtherSide {
 
   std::vector<wii::Report> play(const std::vector<wii::SensedReport>& samples) {
     begin_ = wire_time();
+    playing_ = true;
     const double shift = samples.front().t;
     const StopWatch watch;
     for (const wii::SensedReport& s : samples) {
@@ -71,7 +72,7 @@ class OtherSide {
   }
 
   void take(const vrpn::Received& message) {
-    if (message.type != vrpn::kPose) return;
+    if (!playing_ || message.type != vrpn::kPose) return;
     const auto pose = vrpn::decode_pose(message.payload);
     if (!pose || pose->sensor != 0) return;
     wii::Report r;
@@ -92,6 +93,7 @@ class OtherSide {
   std::string name_;
   vrpn::Server server_;
   vrpn::Client client_;
+  bool playing_ = false;  ///< what the tracker says before is of something else
   vrpn::Timestamp begin_;
   std::vector<wii::Report> reports_;
 };
