@@ -152,7 +152,7 @@ std::vector<wii::Report> read_tum(const std::string& file, const std::string& co
 std::string first_line(const std::string& content) {
   for (std::size_t begin = 0; begin < content.size();) {
     const std::size_t end = std::min(content.find('\n', begin), content.size());
-    const std::string line = content.substr(begin, end - begin);
+    std::string line = content.substr(begin, end - begin);
     begin = end + 1;
     const std::size_t text = line.find_first_not_of(" \t\r");
     if (text != std::string::npos && line[text] != '#') return line;
