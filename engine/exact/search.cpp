@@ -39,6 +39,7 @@ class Search {
   [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
+  static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
   void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
                      std::uint32_t face);
   void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
@@ -231,7 +232,10 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     c.sample = begin + static_cast<std::uint32_t>(next - remaining.begin());
     *next = now[c.sample - begin] = kOutOfReach;
     if (!evaluate_segment(placed, curve, count, face, c) || is_passed_by(placed, curve, c)) continue;
-    if (c.gap_ahead < best.gap_ahead) best = c;
+    if (c.gap_ahead < best.gap_ahead) {
+      best = c;
+      ask_beyond_the_end(placed, best, remaining);
+    }
     if (c.gap_ahead < 0 && c.weight > strongest.weight) strongest = c;
   }
   if (best.gap_ahead == kOutOfReach) return;
@@ -251,6 +255,17 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   }
   if (best.gap_ahead >= 0) return;
   for (const int side : {-1, 1}) add_group_end(placed, best, std::span(estimates).first(count), side, face);
+}
+
+/// A closest place at the end of its segment may go on in the next one, whose estimate, a parabola's about its middle,
+/// can be above by what a parabola leaves out (63 nm were seen): that segment is evaluated in any case.
+void Search::ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining) {
+  const double half = placed.feature->half_width;
+  if (half == 0 || std::abs(best.place.t) < half) return;
+  const std::size_t here = best.sample - best.group;
+  const std::size_t beyond = best.place.t > 0 ? here + 1 : here - 1;  // wraps to one that is not there
+  if (beyond < remaining.size() && remaining[beyond] != kOutOfReach)
+    remaining[beyond] = std::min(remaining[beyond], best.gap_ahead - kClosestPlaceGain);
 }
 
 /// Likewise of the closest place of the candidate's segment.

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "tests/exact/scenes.hpp"
+#include "tests/length.hpp"
 
 namespace verisim::exact::test::round_sides_test {
 namespace {
@@ -60,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, RoundSides,
 TEST_P(RoundSides, ThatCrossAreAsFarApartAsTheirNearestPoints) {
   const auto& [first, second] = GetParam();
   Pair pair(first.solid(), second.solid());
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < verisim::test::by_length<std::uint64_t>(300, 4000, 40000); ++seed) {
     SCOPED_TRACE(seed);
     Draw draw(seed);
     const double gap = draw.between(-0.0003, 0.0003);
