@@ -11,13 +11,13 @@
 #include <chrono>
 #include <csignal>
 #include <system_error>
-#include <thread>
 
 #include "engine/base/error.hpp"
 
 namespace verisim::cli {
 namespace {
 
+constexpr int kFarewell = 1000;            // ms to end by itself once its stdin has ended
 constexpr std::size_t kLineMax = 1 << 20;  // bytes: who sends more without an end of line sends no pose
 
 /// Unlike a pipe, a socket whose reader has died can be written to without a SIGPIPE.
@@ -61,11 +61,9 @@ LineProgram::LineProgram(const std::string& command) : command_(command) {
 
 LineProgram::~LineProgram() {
   close(to_);
+  pollfd ended = {from_, 0, 0};  // nothing but its hanging up
+  poll(&ended, 1, kFarewell);
   close(from_);
-  for (int i = 0; i < 100; ++i) {
-    if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
   kill(-pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
 }

@@ -9,7 +9,7 @@ class LineProgram {
  public:
   /// Starts `sh -c command`. Its stderr is this program's. Error(io) if that fails.
   explicit LineProgram(const std::string& command);
-  /// Ends it, by force after a second.
+  /// Ends it: by force what has not hung up within a second of its stdin's end, or left a process behind.
   ~LineProgram();
   LineProgram(const LineProgram&) = delete;
   LineProgram& operator=(const LineProgram&) = delete;

@@ -152,18 +152,22 @@ Trace encoder_trace(const std::string& path, const std::map<std::string, double>
   return trace;
 }
 
+struct SynthOptions {
+  std::string kind;
+  std::string path;
+  OutOptions out;
+  std::vector<std::string> sets;
+  VirtualRunOptions wii;
+  std::uint64_t seed = 1;
+};
+
 /// Error(usage) for an option that the kind does not know.
-void check_options_of_kind(const CLI::App& command, const std::string& kind) {
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0) continue;
-    const bool of_wii = option->get_group() == "Set-up" || option->check_name("--trajectory") ||
-                        option->check_name("--motion") || option->check_name("--sensor");
-    if (of_wii && kind != "wii") fail(ErrorKind::usage, "{}: '{}' has none; only wii has", option->get_name(), kind);
-    if (option->check_name("--path") && kind != "encoder")
-      fail(ErrorKind::usage, "--path {}: '{}' has none; only encoder has", option->results().front(), kind);
-    if (option->check_name("--set") && kind == "wii")
-      fail(ErrorKind::usage, "--set {}: 'wii' has none; its options are in the help", option->results().front());
-  }
+void check_options_of_kind(const CLI::App& command, const SynthOptions& o) {
+  if (o.kind != "wii") refuse_virtual_remote(command, false, "'" + o.kind + "' has none, only wii has");
+  if (o.kind != "encoder" && !o.path.empty())
+    fail(ErrorKind::usage, "--path {}: '{}' has none; only encoder has", o.path, o.kind);
+  if (o.kind == "wii" && !o.sets.empty())
+    fail(ErrorKind::usage, "--set {}: 'wii' has none; its options are in the help", o.sets.front());
 }
 
 /// What the trace was made from, so that it can be made again: the options that were given, but not where it goes.
@@ -177,15 +181,6 @@ std::string written_options(const CLI::App& command) {
   }
   return text;
 }
-
-struct SynthOptions {
-  std::string kind;
-  std::string path;
-  OutOptions out;
-  std::vector<std::string> sets;
-  VirtualRunOptions wii;
-  std::uint64_t seed = 1;
-};
 
 void synth(SynthOptions& o, const CLI::App& command) {
   std::map<std::string, double> parameters;
@@ -203,7 +198,7 @@ void synth(SynthOptions& o, const CLI::App& command) {
     fail(ErrorKind::usage, "there is no synthesizer '{}'{}; there are {}", o.kind,
          near.empty() ? "" : "; did you mean '" + near + "'?", fmt::join(kinds, ", "));
   }
-  check_options_of_kind(command, o.kind);
+  check_options_of_kind(command, o);
   std::vector<FileIdentity> inputs;
   const auto make = [&] {
     if (o.kind == "encoder") return encoder_trace(o.path.empty() ? "straight" : o.path, parameters);
@@ -211,13 +206,10 @@ void synth(SynthOptions& o, const CLI::App& command) {
     o.wii.seed = o.seed;
     return wii_trace_of(run_virtually(o.wii, inputs), written_options(command));
   };
-  if (o.kind == "wii") {  // what is read is known only then
-    const Trace made = make();
-    write_trace(check_output({o.out.path, OutputKind::trace, o.out.force, {}}, inputs), made);
-  } else {
-    const std::string out = check_output({o.out.path, OutputKind::trace, o.out.force, {}});
-    write_trace(out, make());
-  }
+  const OutputPlace place{o.out.path, OutputKind::trace, o.out.force, {}};
+  (void)check_output(place);  // before the work
+  const Trace made = make();
+  write_trace(check_output(place, inputs), made);  // what was read is known only now
 }
 
 void add_synth(CLI::App& trace, int& exit_code) {

@@ -51,11 +51,7 @@ Samples samples_of(const JudgeCommand& c, const CLI::App& command, std::vector<F
     VirtualRun run = run_virtually(c.virtual_run, opened);
     return {run.trajectory, run.sensor, std::move(run.samples)};
   }
-  for (const CLI::Option* option : command.get_options())
-    if (option->count() > 0 && (option->get_group() == "Set-up" || option->check_name("--trajectory") ||
-                                option->check_name("--motion") || option->check_name("--sensor")))
-      fail(ErrorKind::usage, "{}: describes a virtual remote, but --trace {} is what was seen; leave one of them out",
-           option->get_name(), c.trace);
+  refuse_virtual_remote(command, true, "--trace " + c.trace + " is what was seen");
   const wii::Recording recording = read_wii_file(c.trace, c.limits, &opened);
   if (recording.truth.empty())
     fail(ErrorKind::input, "{}: no columns px ... qw; a tracker can only be judged where the true poses are known",
@@ -135,9 +131,34 @@ void write_files(const JudgeCommand& c, const wii::Judgement& j, const std::vect
              c.out.force, inputs);
 }
 
-void judge(const JudgeCommand& c, const CLI::App& command) {
+enum class Source { file, program, wire };
+
+/// Error(usage) for an option that says nothing of this source.
+void check_options_of(Source source, const JudgeCommand& c, const CLI::App& command) {
+  const auto refuse = [&](bool is_of_another, const CLI::Option& option, const char* whose) {
+    if (is_of_another) fail(ErrorKind::usage, "{}: is of {} alone; leave it out", option.get_name(), whose);
+  };
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0) continue;
+    if (option->get_group() == "Wire") refuse(source != Source::wire, *option, "a tracker NAME@HOST");
+    if (option->check_name("--columns")) refuse(source != Source::file, *option, "a file of poses");
+    if (option->check_name("--patience"))
+      refuse(source == Source::file, *option, "a program and of a tracker NAME@HOST");
+    if (option->check_name("--allow-gaps") || option->check_name("--resort"))
+      refuse(c.trace.empty(), *option, "--trace");
+  }
+}
+
+Source source_of(const JudgeCommand& c) {
   if (c.poses.empty() == c.program.empty())
     fail(ErrorKind::usage, "wii judge: name a file of poses, a tracker NAME@HOST, or --program CMD; one of them");
+  if (!c.program.empty()) return Source::program;
+  return c.poses.find('@') != std::string::npos && !fs::exists(c.poses) ? Source::wire : Source::file;
+}
+
+void judge(const JudgeCommand& c, const CLI::App& command) {
+  const Source source = source_of(c);
+  check_options_of(source, c, command);
   std::vector<FileIdentity> inputs;
   const Samples samples = samples_of(c, command, inputs);
   if (!c.out.path.empty()) check_row_files(c.out, inputs);
@@ -147,12 +168,12 @@ void judge(const JudgeCommand& c, const CLI::App& command) {
   options.trajectory = samples.trajectory;
   options.sensor = samples.sensor;
   std::vector<wii::Report> reports;
-  if (!c.program.empty()) {
+  if (source == Source::program) {
     options.name = fs::path(c.program.substr(0, c.program.find(' '))).filename().string();
     reports = ask_program(c, samples.reports);
-  } else if (c.poses.find('@') != std::string::npos && !fs::exists(c.poses)) {
+  } else if (source == Source::wire) {
     options.name = c.poses;
-    reports = hear_tracker(c.poses, c.wire, samples.reports);
+    reports = hear_tracker(c.poses, c.wire, c.patience, samples.reports);
   } else {
     options.name = fs::path(c.poses).filename().string();
     reports = read_poses(c.poses, c.columns, inputs);
@@ -173,7 +194,8 @@ void add_wii_judge(CLI::App& wii_command, int& exit_code) {
                       "Tracker0@HOST[:PORT], which is listened to while the remote plays for it over VRPN");
   command->add_option("--program", o->program,
                       "Or a command that is fed lines 't,battery,gx,…,s4' and answers each with 't,valid,px,…,qw'");
-  command->add_option("--trace", o->trace, "What it was fed: a wii trace with true poses");
+  command->add_option("--trace", o->trace,
+                      "What it was fed: a wii trace with true poses (as many LEDs count as in view as blobs)");
   command->add_option("--columns", o->columns, "Names in the CSV: 't=time px=x py=y …', optionally valid=…");
   command
       ->add_option("--align", o->alignment,

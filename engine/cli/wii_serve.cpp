@@ -41,10 +41,7 @@ std::unique_ptr<wii::ReportSource> source_of(const ServeCommand& c, const CLI::A
   const int sources = !c.trace.empty() + !c.trajectory.empty() + !c.motion.empty();
   if (sources != 1) fail(ErrorKind::usage, "wii serve: give one of --trace FILE, --trajectory NAME, --motion FILE");
   if (!c.trace.empty()) {
-    for (const CLI::Option* option : command.get_options())
-      if (option->count() > 0 && (option->get_group() == "Set-up" || option->check_name("--sensor")))
-        fail(ErrorKind::usage, "{}: describes a virtual remote, but --trace {} is what was seen; leave one of them out",
-             option->get_name(), c.trace);
+    refuse_virtual_remote(command, true, "--trace " + c.trace + " is what was seen");
     wii::Recording recording = read_wii_file(c.trace, c.limits);
     if (!c.devices.truth.empty() && recording.truth.empty())
       fail(ErrorKind::input, "{}: no columns px ... qw; --truth needs true poses", c.trace);
@@ -143,7 +140,7 @@ void add_wii_serve(CLI::App& wii_command, int& exit_code) {
   command->add_option("--trajectory", o->trajectory, "Or a virtual remote, live: a trajectory of wii validate");
   command->add_option("--motion", o->motion, "Or before a recorded motion of a head: a trace with poses");
   o->set_up.add(*command);
-  command->add_option("--sensor", o->sensor, "What that remote is like (see wii validate)");
+  command->add_option("--sensor", o->sensor, "What that remote is like (see wii validate)")->group(kVirtualRemote);
   command->add_option("--tracker", o->tracker, "Which")->check(CLI::IsMember(trackers_of(1)));
   command->add_option("--device", o->devices.tracker, "Name of the tracker device");
   command->add_option("--channels", o->devices.analog, "Name of the analog device");

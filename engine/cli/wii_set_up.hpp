@@ -13,6 +13,11 @@
 
 namespace verisim::cli {
 
+/// The group in --help of all options that describe a virtual remote.
+inline constexpr const char* kVirtualRemote = "Virtual remote";
+/// Error(usage) if one of them was given where there is no virtual remote; `because` says what is there.
+void refuse_virtual_remote(const CLI::App& command, bool seed_too, const std::string& because);
+
 /// --leds, --fov, --remote-pose, --pixel-noise, --accelerometer-noise, --accelerometer-bits, --rate, --latency.
 struct SetUpOptions {
   std::string leds;

@@ -8,10 +8,13 @@
 namespace verisim::cli {
 void VirtualRunOptions::add(CLI::App& command) {
   command.add_option("--trajectory", trajectory, "Of the head, as wii validate lists them (default: natural)")
-      ->check(CLI::IsMember(names_of(wii::trajectories())));
-  command.add_option("--motion", motion, "Recorded motion of a head instead: a trace with poses, levelled coordinates");
+      ->check(CLI::IsMember(names_of(wii::trajectories())))
+      ->group(kVirtualRemote);
+  command.add_option("--motion", motion, "Recorded motion of a head instead: a trace with poses, levelled coordinates")
+      ->group(kVirtualRemote);
   command.add_option("--sensor", sensor, "What the remote is like, as wii validate lists them (default: wiimote)")
-      ->check(CLI::IsMember(names_of(wii::sensor_cases())));
+      ->check(CLI::IsMember(names_of(wii::sensor_cases())))
+      ->group(kVirtualRemote);
   set_up.add(command);
 }
 

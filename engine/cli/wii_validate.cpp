@@ -68,26 +68,23 @@ void write_files(const ValidateOptions& o, const std::vector<wii::ValidationRow>
   }
 }
 
-/// With glasses of the user's own: no NAME/3, and only trackers that they suffice for, which is said.
-void check_glasses(ValidateOptions& o) {
-  if (!o.validation.set_up.leds) return;
-  for (const std::string& name : o.validation.trackers)
-    if (name.ends_with("/3"))
-      fail(ErrorKind::usage, "--tracker {}: has glasses of its own; leave out --leds, or the /3", name);
-  if (!o.validation.trackers.empty()) return;
-  for (const wii::TrackerEntry& entry : wii::trackers()) {
-    if (entry.leds_min <= o.validation.set_up.leds->count)
-      o.validation.trackers.emplace_back(entry.name);
-    else
-      std::fprintf(stderr, "note: %s is left out: it needs %d LEDs\n", std::string(entry.name).c_str(), entry.leds_min);
-  }
+/// Says which trackers are left out where none were named and the glasses are the user's, or a motion's.
+void say_who_is_left_out(const wii::ValidationOptions& v) {
+  if (!v.trackers.empty()) return;
+  const std::vector<wii::Trajectory>& paths = v.recorded.empty() ? wii::trajectories() : v.recorded;
+  for (const std::string& tracker : wii::default_trackers(v.known))
+    for (const wii::Trajectory& path : paths)
+      if (!wii::suits_glasses(tracker, path, v)) {
+        std::fprintf(stderr, "note: %s is left out: the LEDs that are named do not suit it\n", tracker.c_str());
+        break;
+      }
 }
 
 void run_validate(ValidateOptions& o) {
   std::vector<FileIdentity> inputs;
   for (const std::string& file : o.motions) o.validation.recorded.push_back(read_motion(file, inputs));
   o.validation.set_up = o.set_up.set_up();
-  check_glasses(o);
+  say_who_is_left_out(o.validation);
   if (!o.out.path.empty()) check_row_files(o.out, inputs);
   const std::vector<wii::ValidationRow> rows = wii::validate(o.validation);
   if (!o.out.path.empty()) write_files(o, rows, inputs);
@@ -120,7 +117,9 @@ void add_wii_validate(CLI::App& wii_command, int& exit_code) {
   command->add_option("--sensor", v.sensors, "Only these (repeatable; else ideal and wiimote)")
       ->take_all()
       ->check(CLI::IsMember(names_of(wii::sensor_cases())));
-  command->add_option("--seeds", v.seeds, "Mean over so many seeds, with its 95 % interval")
+  command
+      ->add_option("--seeds", v.seeds,
+                   "Mean over so many seeds, with its 95 % interval; plots over time are of the first")
       ->check(CLI::Range(1, 100000));
   o->set_up.add(*command);
   add_seed_option(

@@ -15,7 +15,8 @@
 namespace verisim::cli {
 namespace {
 
-constexpr int kWireWait = 5;  // ms
+constexpr int kWireWait = 5;     // ms
+constexpr double kLinger = 0.5;  // s after the last sample in which a pose may still come
 
 /// Both ends of the wire to the tracker elsewhere.
 class OtherSide {
@@ -29,16 +30,16 @@ class OtherSide {
                  remote_name.c_str());
   }
 
-  void wait() {
+  void wait(double patience_s) {
     const StopWatch watch;
     while (server_.ready_clients() == 0 || !client_.connected()) {
       turn(kWireWait);
-      if (watch.seconds() > options_.patience)
+      if (watch.seconds() > patience_s)
         fail(ErrorKind::io, "{}: {} within {} s; start it so that it reads {}@{}", name_,
              !client_.connected()     ? "did not answer"
              : server_.clients() == 0 ? "nobody asked for the channels"
                                       : "whoever came did not take the channels",
-             options_.patience, options_.analog, server_.address().text());
+             patience_s, options_.analog, server_.address().text());
     }
   }
 
@@ -53,8 +54,9 @@ class OtherSide {
                       vrpn::encode_analog(s.channels));
       turn(0);
     }
-    wait_until(watch, samples.back().t - shift + options_.linger);
+    wait_until(watch, samples.back().t - shift + kLinger);
     for (wii::Report& r : reports_) r.t += shift;
+    say_what_was_left_out();
     return std::move(reports_);
   }
 
@@ -74,19 +76,33 @@ class OtherSide {
   void take(const vrpn::Received& message) {
     if (!playing_ || message.type != vrpn::kPose) return;
     const auto pose = vrpn::decode_pose(message.payload);
-    if (!pose || pose->sensor != 0) return;
+    if (!pose || pose->sensor != 0) {
+      ++of_others_;
+      return;
+    }
     wii::Report r;
     r.t = static_cast<double>(microseconds_between(begin_, message.time)) * 1e-6;
     r.valid = r.news = true;
     const auto& [p, q] = pose->placement;
     r.pose = {{p[0], p[1], p[2]}, Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
     r.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
-    if (!r.pose.position.allFinite() || !r.pose.rotation.coeffs().allFinite()) return;
-    if (!reports_.empty() && r.t < reports_.back().t) return;  // overtaken by a later one
-    if (!reports_.empty() && r.t == reports_.back().t)
+    const bool finite = r.pose.position.allFinite() && r.pose.rotation.coeffs().allFinite();
+    if (!finite)
+      ++not_finite_;
+    else if (!reports_.empty() && r.t < reports_.back().t)
+      ++overtaken_;
+    else if (!reports_.empty() && r.t == reports_.back().t)
       reports_.back() = r;
     else
       reports_.push_back(r);
+  }
+
+  void say_what_was_left_out() const {
+    if (of_others_ + not_finite_ + overtaken_ > 0)
+      std::fprintf(stderr,
+                   "%s: left out %d poses of other sensors or malformed, %d not finite, %d overtaken by later ones\n",
+                   name_.c_str(), of_others_, not_finite_, overtaken_);
+    if (!client_.connected()) std::fprintf(stderr, "%s: left before the end\n", name_.c_str());
   }
 
   const WireOptions& options_;
@@ -96,6 +112,7 @@ class OtherSide {
   bool playing_ = false;  ///< what the tracker says before is of something else
   vrpn::Timestamp begin_;
   std::vector<wii::Report> reports_;
+  int of_others_ = 0, not_finite_ = 0, overtaken_ = 0;
 };
 
 }  // namespace
@@ -108,11 +125,11 @@ void WireOptions::add(CLI::App& command) {
   command.add_flag("--no-udp", no_udp, "Have poses sent by TCP")->group("Wire");
 }
 
-std::vector<wii::Report> hear_tracker(const std::string& remote_name, const WireOptions& options,
+std::vector<wii::Report> hear_tracker(const std::string& remote_name, const WireOptions& options, double patience_s,
                                       const std::vector<wii::SensedReport>& samples) {
   const InterruptScope until_it_is_judged;
   OtherSide other(remote_name, options);
-  other.wait();
+  other.wait(patience_s);
   std::vector<wii::Report> reports = other.play(samples);
   if (reports.empty()) fail(ErrorKind::io, "{}: sent no pose of sensor 0 while the remote played", remote_name);
   return reports;

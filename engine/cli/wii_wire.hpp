@@ -16,19 +16,18 @@ struct WireOptions {
   std::string analog = "WiiMote0";
   std::string host = "127.0.0.1";
   std::uint16_t port = vrpn::kDefaultPort;
-  double patience = 10;  ///< s for the other side to come
-  double linger = 0.5;   ///< s after the last sample in which a report may still come
   bool no_udp = false;
 
-  /// --channels, --serve-host, --serve-port, --wire-patience.
+  /// --channels, --serve-host, --serve-port, --no-udp.
   void add(CLI::App& command);
 };
 
 /// Serves the samples' channels at their own pace once the other side has connected to them and its tracker answers;
 /// takes the tracker's poses (sensor 0), their times counted from the begin of the samples. VRPN tells no validity: a
-/// pose is valid. Of poses with equal times the last one counts. Progress on stderr. Error(io) if the other side does
+/// pose is valid. Of poses with equal times the last one counts; how many others were left out, and why, is said on
+/// stderr, like progress. Error(io) if the other side does
 /// not come in time, Error(interrupted).
 [[nodiscard]] std::vector<wii::Report> hear_tracker(const std::string& remote_name, const WireOptions& options,
-                                                    const std::vector<wii::SensedReport>& samples);
+                                                    double patience_s, const std::vector<wii::SensedReport>& samples);
 
 }  // namespace verisim::cli

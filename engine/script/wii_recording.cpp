@@ -125,6 +125,21 @@ wii::Recording read_wii_recording(Inputs& inputs, const std::string& name, const
   return wii_recording_of(name, parse_trace(name, inputs.read(name), "wii", limits));
 }
 
+std::vector<Pose> trace_poses(const Trace& trace) {
+  std::array<std::size_t, kPoseColumns.size()> columns{};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const int column = trace.column(kPoseColumns[i]);
+    if (column < 0) return {};
+    columns[i] = static_cast<std::size_t>(column);
+  }
+  std::vector<Pose> poses;
+  for (std::size_t row = 0; row < trace.rows(); ++row) {
+    const auto at = [&](std::size_t i) { return trace.at(row, columns[i]); };
+    poses.push_back({{at(0), at(1), at(2)}, Quaterniond(at(6), at(3), at(4), at(5)).normalized()});
+  }
+  return poses;
+}
+
 wii::Recording wii_recording_of(const std::string& file, const Trace& trace) {
   wii::Recording recording;
   recording.settings = wii_settings_of(file, trace);
@@ -139,19 +154,11 @@ wii::Recording wii_recording_of(const std::string& file, const Trace& trace) {
       fail(ErrorKind::input, "{}: column '{}' is missing; a wii trace has all 16", file, kChannelColumns[i]);
     channel[i] = static_cast<std::size_t>(column);
   }
-  std::array<int, kPoseColumns.size()> pose{};
-  bool truth = true;
-  for (std::size_t i = 0; i < pose.size(); ++i) {
-    pose[i] = trace.column(kPoseColumns[i]);
-    truth = truth && pose[i] >= 0;
-  }
+  recording.truth = trace_poses(trace);
   for (std::size_t row = 0; row < trace.rows(); ++row) {
     recording.t.push_back(trace.at(row, 0));
     wii::Channels& channels = recording.channels.emplace_back();
     for (std::size_t i = 0; i < channel.size(); ++i) channels[i] = trace.at(row, channel[i]);
-    if (!truth) continue;
-    const auto at = [&](std::size_t i) { return trace.at(row, static_cast<std::size_t>(pose[i])); };
-    recording.truth.push_back({{at(0), at(1), at(2)}, Quaterniond(at(6), at(3), at(4), at(5)).normalized()});
   }
   return recording;
 }

@@ -21,6 +21,8 @@ namespace verisim {
 /// What the header of a trace called `name` says of glasses and sensor ("# leds:", "# fov_deg:"), else the defaults.
 /// Error(input) for a line that does not hold the numbers it should.
 [[nodiscard]] wii::TrackerSettings wii_settings_of(const std::string& name, const Trace& trace);
+/// The poses of a trace of any kind, columns px … qw; none without all of these columns.
+[[nodiscard]] std::vector<Pose> trace_poses(const Trace& trace);
 /// Channels, true poses if there are columns px … qw, and "# remote_pose:". Error(input) as wii_settings_of, and for a
 /// missing column.
 [[nodiscard]] wii::Recording wii_recording_of(const std::string& name, const Trace& trace);

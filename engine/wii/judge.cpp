@@ -14,7 +14,7 @@ namespace {
 constexpr double kSame = 1e-9;        // s: times that were written with nine digits
 constexpr double kGapMax = 0.1;       // s between two samples that truth may be interpolated over
 constexpr double kOffsetMax = 1;      // s, either way, that is searched
-constexpr double kOffsetStep = 0.02;  // s: a fifth of the shortest swing of a head
+constexpr double kOffsetStep = 0.02;  // s, the first; then it is halved down to 0.1 ms
 constexpr double kMotionMin = 0.005;  // m rms about the mean: below, noise decides
 
 /// The truth at any time.

@@ -97,11 +97,27 @@ const SensorCase& sensor_case(const std::string& name) {
   fail(ErrorKind::input, "sensor '{}' is not known; choose one of {}", name, fmt::join(names, ", "));
 }
 
+std::vector<std::string> default_trackers(Trackers known) {
+  std::vector<std::string> trackers = tracker_names(known);
+  for (const TrackerEntry& entry : known)
+    if (entry.judged_with_triangle) trackers.push_back(fmt::format("{}/3", entry.name));
+  return trackers;
+}
+
+bool suits_glasses(const std::string& tracker, const Trajectory& path, const ValidationOptions& options) {
+  const std::optional<LedLayout> leds = first_of(options.set_up, path.own).leds;
+  if (!leds) return true;
+  return !tracker.ends_with("/3") && find_tracker(tracker, options.known).leds_min <= leds->count;
+}
+
 ValidationRow validate_one(const std::string& tracker, const Trajectory& path, const SensorCase& sensor,
                            const ValidationOptions& options, std::vector<ErrorSample>* history) {
   const Contender who = contender(tracker, options.known);
   TrackerSettings settings = options.tracker;
   const SetUp set_up = first_of(options.set_up, path.own);
+  if (set_up.leds && tracker.ends_with("/3"))
+    fail(ErrorKind::input, "tracker {}: has glasses of its own, but {} names others; leave out the /3 or the LEDs",
+         tracker, path.own.leds ? path.name : "the set-up");
   if (set_up.leds)
     settings.leds = *set_up.leds;
   else if (settings.leds.count < who.leds.count)
@@ -147,12 +163,8 @@ ValidationRow validate_seeds(const std::string& tracker, const Trajectory& path,
 
 std::vector<ValidationRow> validate(const ValidationOptions& options) {
   VERISIM_ASSERT(options.seeds >= 1);
-  std::vector<std::string> trackers = options.trackers;
-  if (trackers.empty()) {
-    trackers = tracker_names(options.known);
-    for (const TrackerEntry& entry : options.known)
-      if (entry.judged_with_triangle) trackers.push_back(fmt::format("{}/3", entry.name));
-  }
+  const std::vector<std::string> trackers =
+      options.trackers.empty() ? default_trackers(options.known) : options.trackers;
   std::vector<Trajectory> paths = options.recorded;
   if (paths.empty() && options.trajectories.empty()) paths = trajectories();
   for (const std::string& name : options.trajectories) paths.push_back(trajectory(name));
@@ -163,7 +175,8 @@ std::vector<ValidationRow> validate(const ValidationOptions& options) {
   for (const std::string& sensor : sensors)
     for (const Trajectory& path : paths)
       for (const std::string& tracker : trackers)
-        rows.push_back(validate_seeds(tracker, path, sensor_case(sensor), options));
+        if (!options.trackers.empty() || suits_glasses(tracker, path, options))
+          rows.push_back(validate_seeds(tracker, path, sensor_case(sensor), options));
   return rows;
 }
 

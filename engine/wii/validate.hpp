@@ -45,7 +45,7 @@ struct ValidationRow {
   double nees_lower = 0;        ///< 2.5 % bound of the mean: below it the covariance is larger than the errors need
   double nees_upper = 0;        ///< 97.5 % bound of the mean
   double within_95 = 0;         ///< fraction of errors inside their own 95 % ellipsoid
-  bool consistent = false;      ///< nees <= nees_upper: never too sure
+  bool consistent = false;      ///< nees <= nees_upper: never too sure; of several seeds: with each
   double orientation_nees = 0;  ///< the same of the orientation
   double orientation_nees_lower = 0;  ///< likewise
   double orientation_nees_upper = 0;  ///< likewise
@@ -59,7 +59,7 @@ struct ValidationRow {
 /// What a tracker that states no covariance leaves unknown is NaN: nees, within_95 and their bounds.
 
 struct ValidationOptions {
-  std::vector<std::string> trackers;      ///< empty: all, and NAME/3 of those that say so (TrackerEntry)
+  std::vector<std::string> trackers;      ///< empty: all that suit (default_trackers)
   std::vector<std::string> trajectories;  ///< empty: all, unless motions are recorded
   std::vector<std::string> sensors;       ///< empty: ideal and wiimote
   Trackers known = wii::trackers();       ///< the table that the names above are looked up in
@@ -85,8 +85,12 @@ struct ErrorSample {
                                          const ValidationOptions& options, std::vector<ErrorSample>* history = nullptr);
 /// The mean of one row's figures over several seeds, with intervals. @pre there are two or more, of one combination
 [[nodiscard]] ValidationRow mean_of_seeds(const std::vector<ValidationRow>& rows);
-/// Every combination, trackers innermost: about 1 ms per simulated second each. Error(input) for a name that is not
-/// known.
+/// All trackers of the table, and NAME/3 of those that say so (TrackerEntry).
+[[nodiscard]] std::vector<std::string> default_trackers(Trackers known);
+/// Whether a tracker can be run over the glasses that the set-up, or else the motion, names: NAME/3 has its own.
+[[nodiscard]] bool suits_glasses(const std::string& tracker, const Trajectory& path, const ValidationOptions& options);
+/// Every combination, trackers innermost; where no trackers are named, those that suit the glasses: about 1 ms per
+/// simulated second each. Error(input) for a name that is not known.
 [[nodiscard]] std::vector<ValidationRow> validate(const ValidationOptions& options);
 
 /// The table as text for a terminal, or as CSV with every figure.

@@ -1,6 +1,7 @@
 #include "engine/base/hash.hpp"
 
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
 #include <vector>
 
@@ -32,6 +33,15 @@ TEST(HashBytes, DependsOnSeedLengthAndEveryBit) {
     EXPECT_NE(hash_bytes(data.data(), data.size(), 0), plain) << "bit " << bit;
     data[bit / 8] ^= static_cast<unsigned char>(1u << (bit % 8));
   }
+}
+
+// The library's plain function, without a choice of vectors, on both sides of where wider ones take over.
+TEST(HashBytes, OfKilobytesAreThoseOfTheLibrarysPlainFunction) {
+  std::vector<unsigned char> data(40000);
+  for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<unsigned char>(i * i + 7 * i / 3);
+  for (std::size_t size = 3000; size <= data.size(); size += 137)
+    for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{0x9e3779b97f4a7c15}})
+      EXPECT_EQ(hash_bytes(data.data(), size, seed), XXH3_64bits_withSeed(data.data(), size, seed)) << size;
 }
 
 TEST(ToHex, WritesSixteenLowerCaseDigits) {

@@ -135,6 +135,10 @@ class Judge(ProgramTest):
         poses = self.poses(trace)
         self.refuse(2, "one of them", "wii", "judge")
         self.refuse(2, "leave one of them out", "wii", "judge", poses, "--trace", trace, "--sensor", "ideal")
+        self.refuse(2, "--columns: is of a file", "wii", "judge", "--program", "true", "--columns", "t=t")
+        self.refuse(2, "--serve-port: is of a tracker", "wii", "judge", poses, "--trace", trace, "--serve-port", "0")
+        self.refuse(2, "--resort: is of --trace", "wii", "judge", poses, "--resort")
+        self.refuse(2, "leave one of them out", "wii", "judge", poses, "--trace", trace, "--seed", "2")
         self.refuse(2, "--time-offset", "wii", "judge", poses, "--trace", trace, "--time-offset", "soon")
         self.refuse(2, "no column of that name", "wii", "judge", poses, "--trace", trace, "--columns", "px=nowhere")
         self.refuse(3, ["head moves", "alignment"], "wii", "judge", poses, "--trace", trace, "--align", "se3")
@@ -155,6 +159,10 @@ class SetUp(ProgramTest):
             info = self.run_json("trace", "info", self.path("out.csv"))
             self.assertEqual((info["leds"], info["fov_deg"]), (leds, fov))
             os.remove(self.path("out.csv"))
+        done = self.succeed("wii", "validate", "--motion", motion, "--sensor", "ideal")
+        self.assertIn("three-led is left out", done.stderr)
+        self.assertIn("scaat/3 is left out", done.stderr)
+        self.assertNotIn("scaat/3", done.stdout)
 
     def test_seeds_give_an_interval(self):
         rows = self.run_json("wii", "validate", "--trajectory", "static", "--sensor", "noisy", "--seeds", "4")["rows"]
@@ -167,7 +175,7 @@ class SetUp(ProgramTest):
         done = self.succeed("wii", "validate", "--trajectory", "static", "--sensor", "ideal", "--leds", "0.1 0 0; -0.1 0 0")
         self.assertIn("three-led is left out", done.stderr)
         self.assertNotIn("three-led", done.stdout)
-        self.refuse(2, "glasses of its own", "wii", "validate", "--tracker", "scaat/3", "--leds", "0.1 0 0; -0.1 0 0")
+        self.refuse(3, "glasses of its own", "wii", "validate", "--tracker", "scaat/3", "--leds", "0.1 0 0; -0.1 0 0")
 
     def test_a_set_up_is_of_a_virtual_remote_alone(self):
         self.refuse(2, "only wii has", "trace", "synth", "sine", "--rate", "50", "-o", self.path("x.csv"))

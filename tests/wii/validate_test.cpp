@@ -23,6 +23,7 @@ TEST(ValidationFigures, AreThoseOfAConstantError) {
     Report report;
     report.valid = k >= 10;
     report.pose.position = {0.01, 0, 1};
+    report.pose.rotation = rotation_from_vector({0, 0.03, 0});
     report.covariance = 1e-4 * Matrix6d::Identity();
     figures.add(truth, report);
   }
@@ -30,6 +31,7 @@ TEST(ValidationFigures, AreThoseOfAConstantError) {
   EXPECT_NEAR(row.position.rms, 0.01, 1e-15);
   EXPECT_NEAR(row.position.rms_axis.x(), 0.01, 1e-15);
   EXPECT_NEAR(row.nees, 1.0 / 3, 1e-12);
+  EXPECT_NEAR(row.orientation_nees, 0.03 * 0.03 / 1e-4 / 3, 1e-9);  // 0.03 rad, claimed to be 0.01
   EXPECT_NEAR(row.availability, 0.9, 1e-12);
   EXPECT_NEAR(row.longest_return, 0.1, 1e-12);
   EXPECT_EQ(row.within_95, 1);
