@@ -159,15 +159,11 @@ class Failures(Batches):
 
     def test_a_killed_worker_is_a_row_that_says_so(self):
         process = self.start("b", "--vary", "misbehave=no,hang", "--repeat", "2", "--jobs", "2")
-        for _ in range(2):
-            def kill_one():
-                done = len(children(process.pid)) > 0 and self.done("b") == 2
-                if done:
-                    os.kill(children(process.pid)[0], signal.SIGKILL)
-                return done
-            self.wait_for(kill_one)
-            before = self.killed("b")
-            self.wait_for(lambda: self.killed("b") > before)
+        self.wait_for(lambda: self.done("b") == 2)
+        for killed in range(2):
+            self.wait_for(lambda: children(process.pid))
+            os.kill(children(process.pid)[0], signal.SIGKILL)
+            self.wait_for(lambda: self.killed("b") == killed + 1)
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1, err)
         rows = self.rows("b")
