@@ -1,10 +1,19 @@
 #include "engine/wii/gravity.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/contract.hpp"
+#include "engine/base/pinned_math.hpp"
 
 namespace verisim::wii {
+namespace {
+
+constexpr double kEvidenceMax = 3;      // of one reading, in log-odds
+constexpr double kScatterReadings = 5;  // that the scatter before the first reading is worth
+
+}  // namespace
+
 Matrix3d levelling(const Vector3d& up_R) {
   VERISIM_ASSERT(is_finite(up_R));
   VERISIM_ASSERT(!up_R.isZero(0));
@@ -22,10 +31,7 @@ Matrix3d levelling(const Vector3d& up_R) {
 }
 
 GravityFilter::GravityFilter(double time_constant, const Thresholds& thresholds)
-    : time_constant_(time_constant),
-      shaken_(thresholds.shaken),
-      gap_max_(thresholds.gravity_gap),
-      direction_min_(thresholds.direction_min) {
+    : time_constant_(time_constant), thresholds_(thresholds) {
   VERISIM_ASSERT(is_positive(time_constant));
 }
 
@@ -34,23 +40,79 @@ void GravityFilter::add(double dt, const Vector3d& force_R) {
   VERISIM_ASSERT(is_finite(force_R));
   VERISIM_ASSERT(!force_R.isZero(0));
   if (!known_) {
-    up_R_ = force_R;
-    rate_R_.setZero();
+    start(force_R);
   } else {
-    const bool shaken = std::abs(force_R.norm() - 1) > shaken_;
-    if (shaken || dt > gap_max_) rate_R_.setZero();
-    if (shaken || (force_R == up_R_ && rate_R_.isZero(0))) return;
-    const double keep = time_constant_ / (time_constant_ + dt);
-    const Vector3d expected = up_R_ + dt * rate_R_;
-    const Vector3d innovation = force_R - expected;
-    const Vector3d mixed = expected + (1 - keep * keep) * innovation;
-    rate_R_ += (1 - keep) / (time_constant_ + dt) * innovation;
-    const bool opposed = mixed.norm() < direction_min_;
-    up_R_ = opposed ? force_R : mixed;
-    if (opposed) rate_R_.setZero();
+    const bool shaken = std::abs(force_R.norm() - 1) > thresholds_.shaken;
+    if (shaken || dt > thresholds_.gravity_gap) rate_R_.setZero();
+    if (shaken) return;
+    learn_scatter(dt, force_R);
+    double evidence = average(dt, force_R) - follow(dt, force_R);
+    // Both foresee that a rounded reading stays the same for a while. A single reading, however far off, decides nothing.
+    if (force_R == last_R_) evidence = 0;
+    const double odds = rest_ / (1 - rest_) * pinned::exp(std::clamp(evidence, -kEvidenceMax, kEvidenceMax));
+    rest_ = odds / (1 + odds);
   }
+  last_R_ = force_R;
+  conclude();
+}
+
+void GravityFilter::start(const Vector3d& force_R) {
   known_ = true;
-  C_LR_ = levelling(up_R_);
+  scatter_ = thresholds_.scatter * thresholds_.scatter;
+  readings_ = 1;
+  resting_ = moving_ = {force_R, 1};
+  rest_ = 0.5;
+}
+
+void GravityFilter::learn_scatter(double dt, const Vector3d& force_R) {
+  // Half the square of a difference; what a remote turns by between two readings is little beside it.
+  const double here = (force_R - last_R_).squaredNorm() / 6;
+  const double share = std::max(1 / (readings_ + kScatterReadings), dt / (thresholds_.scatter_time + dt));
+  scatter_ = std::max(scatter_ + share * (here - scatter_), thresholds_.scatter_min * thresholds_.scatter_min);
+  ++readings_;
+}
+
+double GravityFilter::average(double dt, const Vector3d& force_R) {
+  // The remote may have come to rest since the last reading, and then its direction is the moving one's.
+  const double stops = (1 - rest_) * std::min(0.5, dt / thresholds_.moving_for);
+  const double stays = rest_ * (1 - std::min(0.5, dt / thresholds_.resting_for));
+  rest_ = stays + stops;
+  const double new_share = stops / rest_;
+  const Vector3d apart = moving_.up_R - resting_.up_R;
+  resting_.variance += new_share * (moving_.variance - resting_.variance) +
+                       new_share * (1 - new_share) * apart.squaredNorm() / (3 * scatter_);
+  resting_.up_R += new_share * apart;
+
+  const Vector3d innovation = force_R - resting_.up_R;
+  const double expected = 1 + resting_.variance;
+  resting_.up_R += resting_.variance / expected * innovation;
+  resting_.variance /= expected;
+  return likelihood(innovation, expected);
+}
+
+double GravityFilter::follow(double dt, const Vector3d& force_R) {
+  const double keep = time_constant_ / (time_constant_ + dt);
+  const double gain = std::max(1 / readings_, 1 - keep * keep);
+  const Vector3d expected = moving_.up_R + dt * rate_R_;
+  const Vector3d innovation = force_R - expected;
+  const Vector3d mixed = expected + gain * innovation;
+  if (gain * readings_ > 1) rate_R_ += (1 - keep) / (time_constant_ + dt) * innovation;
+  const bool opposed = mixed.norm() < thresholds_.direction_min;
+  moving_ = {opposed ? force_R : mixed, gain};
+  if (opposed) rate_R_.setZero();
+  return likelihood(innovation, 1 / (1 - gain));
+}
+
+double GravityFilter::likelihood(const Vector3d& innovation, double variance) const {
+  return -0.5 * (3 * pinned::log(variance) + innovation.squaredNorm() / (variance * scatter_));
+}
+
+void GravityFilter::conclude() {
+  const Vector3d apart = resting_.up_R - moving_.up_R;
+  const Vector3d up_R = moving_.up_R + rest_ * apart;
+  C_LR_ = levelling(up_R.norm() < thresholds_.direction_min ? moving_.up_R : up_R);
+  tilt_variance_ = scatter_ * (moving_.variance + rest_ * (resting_.variance - moving_.variance)) +
+                   rest_ * (1 - rest_) * apart.squaredNorm() / 2;
 }
 
 }  // namespace verisim::wii

@@ -14,10 +14,13 @@ namespace verisim::wii {
 /// @pre up_R is finite and not zero
 [[nodiscard]] Matrix3d levelling(const Vector3d& up_R);
 
-/// The direction of gravity, smoothed: readings count for about `time_constant`, the first one at once. A remote that
-/// tilts steadily is followed without lag (the filter knows a rate: double exponential smoothing, both poles at the
-/// time constant). Readings whose length says that the remote is shaken (outside 1 +- 0.3 g) are left out once a
-/// direction is known.
+/// The direction of gravity, by one of two models, whichever tells the readings better, weighed as interacting multiple
+/// models are (Blom and Bar-Shalom 1988):
+///   at rest  the mean of all readings since the remote came to rest, from the first one on: 1/n of each;
+///   moving   double exponential smoothing, both poles at `time_constant`: a remote that tilts steadily is followed
+///            without lag.
+/// How far readings scatter is learned from their differences, so that the better accelerometer is trusted sooner.
+/// Readings whose length says that the remote is shaken (outside 1 +- 0.3 g) are left out once a direction is known.
 class GravityFilter {
  public:
   /// @pre the time constant is finite and above 0
@@ -26,7 +29,7 @@ class GravityFilter {
   /// One reading [g], `dt` seconds after the one before. Constant time, no allocation.
   /// @pre dt is finite and not negative; the reading is finite and has a direction
   void add(double dt, const Vector3d& force_R);
-  void forget() { known_ = false; }
+  void forget() { *this = GravityFilter(time_constant_, thresholds_); }
 
   [[nodiscard]] bool known() const { return known_; }
   /// @pre known()
@@ -34,13 +37,36 @@ class GravityFilter {
     VERISIM_ASSERT(known_);
     return C_LR_;
   }
+  /// How likely it is that the remote rests.
+  [[nodiscard]] double rest() const { return rest_; }
+  /// Variance of C_LR's tilt about either horizontal axis [rad^2], as far as scattered readings make it: a constant
+  /// error of the accelerometer is not seen.
+  [[nodiscard]] double tilt_variance() const { return tilt_variance_; }
 
  private:
-  double time_constant_;                     ///< s
-  double shaken_, gap_max_, direction_min_;  ///< g, s, g: see Thresholds
+  /// A direction [g] and its variance, as a multiple of one reading's.
+  struct Mean {
+    Vector3d up_R = Vector3d::UnitY();
+    double variance = 1;
+  };
+  void start(const Vector3d& force_R);
+  void learn_scatter(double dt, const Vector3d& force_R);
+  /// These three return how well the model foresaw the reading: its log-likelihood, less what both have in common.
+  double follow(double dt, const Vector3d& force_R);
+  double average(double dt, const Vector3d& force_R);
+  [[nodiscard]] double likelihood(const Vector3d& innovation, double variance) const;
+  void conclude();
+
+  double time_constant_;  ///< s
+  Thresholds thresholds_;
   bool known_ = false;
-  Vector3d up_R_ = Vector3d::UnitY();
+  Vector3d last_R_ = Vector3d::Zero();  ///< the reading before
+  double scatter_ = 0;                  ///< variance of one reading about its mean, per axis [g^2]
+  double readings_ = 0;                 ///< that the scatter and the moving mean rest on
+  Mean resting_, moving_;
   Vector3d rate_R_ = Vector3d::Zero();  ///< 1/s
+  double rest_ = 0;
+  double tilt_variance_ = 0;
   Matrix3d C_LR_ = Matrix3d::Identity();
 };
 

@@ -68,6 +68,11 @@ struct Thresholds {
   double shaken = 0.3;         ///< g off 1: the reading holds more than gravity
   double gravity_gap = 0.25;   ///< s; a rate says nothing after a longer gap
   double direction_min = 0.1;  ///< g; opposed readings can average to nothing
+  double scatter = 0.005;      ///< g, of a reading about its mean, before there are readings
+  double scatter_min = 0.0003;  ///< g: no accelerometer is better
+  double scatter_time = 1;     ///< s that the scatter is learned over
+  double resting_for = 10;     ///< s, mean time that a remote rests
+  double moving_for = 2;       ///< s, likewise moves
 
   // The prior, and what is sure enough.
   double sigma_max = 0.15;      ///< m: less sure than this is not valid
