@@ -121,6 +121,8 @@ void add_wii_validate(CLI::App& wii_command, int& exit_code) {
       ->add_option("--seeds", v.seeds,
                    "Mean over so many seeds, with its 95 % interval; plots over time are of the first")
       ->check(CLI::Range(1, 100000));
+  command->add_flag("--start-poses", v.start_poses,
+                    "Each seed begins from a pose of its own: up to 5 degrees aside, turned as far as trackers assume");
   o->set_up.add(*command);
   add_seed_option(
       *command, [&v](std::uint64_t seed) { v.seed = seed; }, "Seed of the sensor's random streams (0 to 2^64 - 1)");

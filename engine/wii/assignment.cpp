@@ -68,9 +68,8 @@ PairFollower::Match PairFollower::solve(const Reading& reading, int first, int s
 PairFollower::Match PairFollower::match(double t, const Reading& reading, const Matrix3d& C_LR) {
   if (reading.blob_count < 2) return {};
   if (followed_ && t - t_ <= thresholds_.pair_memory) {
-    Match match = continue_pair(t - t_, reading, C_LR);
-    if (!match.found()) return match;
-    if (match.pose.cos_roll > thresholds_.upright_cosine_min) return reconsidered(reading, match, C_LR);
+    const Match match = continue_pair(t - t_, reading, C_LR);
+    return match.found() ? reconsidered(reading, match, C_LR) : match;
   }
   return acquire(reading, C_LR);
 }

@@ -33,13 +33,17 @@ class PairFollower {
     [[nodiscard]] bool found() const { return pose.found; }
   };
   /// The two blobs of this image. While the followed pair is younger than 0.25 s: those nearest to it, within a gate
-  /// and nearer to it than to clutter. Else, or when those mean a head that stands upside down: the pair of least cost,
-  /// if that is low enough. The cost adds up the squared deviations, each over its scale, of
+  /// and nearer to it than to clutter. Else the pair of least cost, if that is low enough, as an upright head
+  /// (half_turn.hpp tells whether it is). The cost adds up the squared deviations, each over its scale, of
   ///   - the head's roll from upright,
   ///   - one blob's size from the other's, and their mean from the size learned for that distance,
   ///   - the blob nearest to each further LED from where the pair says that the LED must be.
   /// A pair of least cost has no blob within clutter_radius of clutter in the image that was followed last.
   [[nodiscard]] Match match(double t, const Reading& reading, const Matrix3d& C_LR);
+  /// The same two blobs, the other way round.
+  [[nodiscard]] Match exchanged(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
+    return solve(reading, match.blob[1], match.blob[0], C_LR);
+  }
   /// `current` (its pose may be missing), or another pair of this image, once in five images in a row another pair has
   /// cost clearly less: an LED whose place a lamp took while it was dark is back. Nothing is computed for images with
   /// fewer than three blobs.

@@ -9,7 +9,8 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kEvidenceMax = 3;      // of one reading, in log-odds
+constexpr double kEvidenceMax = 3;      // of one reading, in log-odds: however far off, it decides nothing alone
+constexpr double kRepeated = 0.6;       // of a reading that counts when it repeats the one before: rounding may have made it
 constexpr double kScatterReadings = 5;  // that the scatter before the first reading is worth
 
 }  // namespace
@@ -30,6 +31,18 @@ Matrix3d levelling(const Vector3d& up_R) {
   return C;
 }
 
+void add_tilt(Matrix6d& covariance, const Vector3d& p_L, const Matrix3d& C_LR, double variance) {
+  VERISIM_ASSERT(is_not_negative(variance));
+  const double sin_pitch = C_LR(1, 2);
+  const double cos_pitch = std::sqrt(std::max(1e-4, 1 - sin_pitch * sin_pitch));
+  Vector6d pitch;
+  pitch << Vector3d::UnitX().cross(p_L), Vector3d::UnitX();
+  const Vector3d roll_axis(0, sin_pitch / cos_pitch, 1);
+  Vector6d roll;
+  roll << roll_axis.cross(p_L), roll_axis;
+  covariance += variance * (pitch * pitch.transpose() + roll * roll.transpose());
+}
+
 GravityFilter::GravityFilter(double time_constant, const Thresholds& thresholds)
     : time_constant_(time_constant), thresholds_(thresholds) {
   VERISIM_ASSERT(is_positive(time_constant));
@@ -46,11 +59,9 @@ void GravityFilter::add(double dt, const Vector3d& force_R) {
     if (shaken || dt > thresholds_.gravity_gap) rate_R_.setZero();
     if (shaken) return;
     learn_scatter(dt, force_R);
-    double evidence = average(dt, force_R) - follow(dt, force_R);
-    // Both foresee that a rounded reading stays the same for a while. A single reading, however far off, decides nothing.
-    if (force_R == last_R_) evidence = 0;
-    const double odds = rest_ / (1 - rest_) * pinned::exp(std::clamp(evidence, -kEvidenceMax, kEvidenceMax));
-    rest_ = odds / (1 + odds);
+    const Surprise resting = average(dt, force_R);
+    const Surprise moving = follow(dt, force_R);
+    weigh(resting, moving, force_R == last_R_ ? kRepeated : 1);
   }
   last_R_ = force_R;
   conclude();
@@ -72,7 +83,7 @@ void GravityFilter::learn_scatter(double dt, const Vector3d& force_R) {
   ++readings_;
 }
 
-double GravityFilter::average(double dt, const Vector3d& force_R) {
+GravityFilter::Surprise GravityFilter::average(double dt, const Vector3d& force_R) {
   // The remote may have come to rest since the last reading, and then its direction is the moving one's.
   const double stops = (1 - rest_) * std::min(0.5, dt / thresholds_.moving_for);
   const double stays = rest_ * (1 - std::min(0.5, dt / thresholds_.resting_for));
@@ -87,10 +98,10 @@ double GravityFilter::average(double dt, const Vector3d& force_R) {
   const double expected = 1 + resting_.variance;
   resting_.up_R += resting_.variance / expected * innovation;
   resting_.variance /= expected;
-  return likelihood(innovation, expected);
+  return {innovation.squaredNorm(), expected};
 }
 
-double GravityFilter::follow(double dt, const Vector3d& force_R) {
+GravityFilter::Surprise GravityFilter::follow(double dt, const Vector3d& force_R) {
   const double keep = time_constant_ / (time_constant_ + dt);
   const double gain = std::max(1 / readings_, 1 - keep * keep);
   const Vector3d expected = moving_.up_R + dt * rate_R_;
@@ -100,11 +111,14 @@ double GravityFilter::follow(double dt, const Vector3d& force_R) {
   const bool opposed = mixed.norm() < thresholds_.direction_min;
   moving_ = {opposed ? force_R : mixed, gain};
   if (opposed) rate_R_.setZero();
-  return likelihood(innovation, 1 / (1 - gain));
+  return {innovation.squaredNorm(), 1 / (1 - gain)};
 }
 
-double GravityFilter::likelihood(const Vector3d& innovation, double variance) const {
-  return -0.5 * (3 * pinned::log(variance) + innovation.squaredNorm() / (variance * scatter_));
+void GravityFilter::weigh(const Surprise& resting, const Surprise& moving, double share) {
+  const double evidence = 1.5 * pinned::log(moving.variance / resting.variance) +
+                          0.5 * (moving.square / moving.variance - resting.square / resting.variance) / scatter_;
+  const double odds = rest_ / (1 - rest_) * pinned::exp(std::clamp(share * evidence, -kEvidenceMax, kEvidenceMax));
+  rest_ = odds / (1 + odds);
 }
 
 void GravityFilter::conclude() {

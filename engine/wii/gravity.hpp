@@ -14,6 +14,11 @@ namespace verisim::wii {
 /// @pre up_R is finite and not zero
 [[nodiscard]] Matrix3d levelling(const Vector3d& up_R);
 
+/// Adds to the covariance of (position, rotation vector) in L what tilt of C_LR about either horizontal axis does, with
+/// its `variance` [rad^2]: it turns everything about the pinhole. Where the lens points up or down, roll turns the
+/// heading too, for that is the lens axis's projection. @pre variance is finite and not negative
+void add_tilt(Matrix6d& covariance, const Vector3d& p_L, const Matrix3d& C_LR, double variance);
+
 /// The direction of gravity, by one of two models, whichever tells the readings better, weighed as interacting multiple
 /// models are (Blom and Bar-Shalom 1988):
 ///   at rest  the mean of all readings since the remote came to rest, from the first one on: 1/n of each;
@@ -51,10 +56,14 @@ class GravityFilter {
   };
   void start(const Vector3d& force_R);
   void learn_scatter(double dt, const Vector3d& force_R);
-  /// These three return how well the model foresaw the reading: its log-likelihood, less what both have in common.
-  double follow(double dt, const Vector3d& force_R);
-  double average(double dt, const Vector3d& force_R);
-  [[nodiscard]] double likelihood(const Vector3d& innovation, double variance) const;
+  /// How far a reading is from what a model foresaw [g^2, over three axes], and the variance per axis that it foresaw,
+  /// as a multiple of one reading's.
+  struct Surprise {
+    double square, variance;
+  };
+  Surprise follow(double dt, const Vector3d& force_R);
+  Surprise average(double dt, const Vector3d& force_R);
+  void weigh(const Surprise& resting, const Surprise& moving, double share);
   void conclude();
 
   double time_constant_;  ///< s

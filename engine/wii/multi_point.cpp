@@ -4,8 +4,10 @@
 
 #include "engine/base/error.hpp"
 #include "engine/wii/acquisition.hpp"
+#include "engine/wii/half_turn.hpp"
 #include "engine/wii/tracker_base.hpp"
 #include "engine/wii/trackers.hpp"
+#include "engine/wii/two_led_covariance.hpp"
 
 namespace verisim::wii {
 namespace {
@@ -19,14 +21,15 @@ class MultiPoint final : public TrackerBase {
         X_R1R2_(settings.X_R1R2.value_or(Pose())),
         solver_(settings),
         followers_{PairFollower(settings.leds, pinhole(), settings.thresholds),
-                   PairFollower(settings.leds, pinhole(), settings.thresholds)} {}
+                   PairFollower(settings.leds, pinhole(), settings.thresholds)},
+        half_turn_(settings.thresholds) {}
 
   [[nodiscard]] std::string_view name() const override { return name_; }
 
  private:
   struct View {
     Reading reading;
-    double t = -std::numeric_limits<double>::infinity();
+    double t = kNever;
   };
 
   void estimate(double t, double /*dt*/, const Reading& reading, int remote, Estimate& result) override {
@@ -35,6 +38,7 @@ class MultiPoint final : public TrackerBase {
     if (!reports(t, remote) || !gravity(0).known()) return;
     upright_ = prior();
     found_ = {};
+    reacquired_ = false;
     if (followed_ &&
         std::abs(t - t_followed_) <= settings().thresholds.lost_head_memory) {  // the other remote's clock may be ahead
       found_ = follow(t);
@@ -43,7 +47,16 @@ class MultiPoint final : public TrackerBase {
       found_ = acquire(t);
     }
     if (!found_.found || found_.cost > settings().thresholds.cost_per_led_max * settings().leds.count) return;
-    level(found_, gravity(0).C_LR(), settings().gravity_sigma, result.pose, result.covariance);
+    level(found_, gravity(0).C_LR(), tilt_variance(), result.pose, result.covariance);
+    if (!seen_fully_)
+      add_second_order(result.covariance, result.pose.position, std::min(upright_.sigma_x, settings().yaw_sigma),
+                       std::min(upright_.sigma_y, settings().pitch_sigma));
+    if (settings().leds.count == 2) {
+      const Eigen::Vector2d roll = roll_of(result.pose.rotation * Vector3d::UnitX());
+      const double doubt = half_turn_.doubt(t, roll.x(), roll.y());
+      result.covariance(5, 5) += HalfTurn::variance(doubt);
+      if (doubt > 0.5) followed_ = false;  // looked for anew
+    }
     result.known = true;
     result.usable = result.covariance.diagonal().head<3>().maxCoeff() <
                     settings().thresholds.sigma_max * settings().thresholds.sigma_max;
@@ -75,6 +88,7 @@ class MultiPoint final : public TrackerBase {
 
   [[nodiscard]] SolvedPose acquire(double t) {
     unassigned_ = 0;
+    reacquired_ = true;
     if (remotes_ == 2) return acquire_pairs(t);
     seen_fully_ = true;
     return acquire_head(views_[0].reading, settings(), pinhole(), solver_, upright_).solved;
@@ -106,7 +120,60 @@ class MultiPoint final : public TrackerBase {
     if (n_most < 2) return {};  // one blob in each of two images may be clutter
     seen_fully_ = n >= 3;
     if (!seen_fully_) take_last_as_prior(t, upright_);
-    return solver_.solve(std::span(sightings).first(static_cast<std::size_t>(n)), upright_, predicted(t));
+    const std::span<Sighting> used = std::span(sightings).first(static_cast<std::size_t>(n));
+    const bool yaw_known = std::abs(t - t_full_) <= settings().thresholds.lost_head_memory;
+    if (remotes_ == 2 && n == 3) return solve_with_a_lone_blob(used, predicted(t), yaw_known);
+    return solver_.solve(used, upright_, predicted(t));
+  }
+
+  /// A pair in one image and one of its LEDs in the other. The distance to that LED is known, and the second lies on its
+  /// ray, before or behind where the ray comes nearest to the first: two turns. While the yaw is not known, the lone
+  /// blob may also be either LED. Of these heads the one that fits best is taken, or the nearest to the last where the
+  /// yaw was known; the covariance holds all that fit nearly as well.
+  [[nodiscard]] SolvedPose solve_with_a_lone_blob(std::span<Sighting> used, const Pose& start, bool yaw_known) {
+    const bool pair_first = used[0].remote == used[1].remote;
+    Sighting& lone = pair_first ? used[2] : used[0];
+    const std::span<const Sighting> pair = used.subspan(pair_first ? 0 : 1, 2);
+    std::array<SolvedPose, 4> heads;
+    int count = 0;
+    for (int i = 0; i < (yaw_known ? 1 : 2); ++i) {
+      if (i == 1) lone.p_H = (lone.p_H == pair[0].p_H ? pair[1] : pair[0]).p_H;
+      const SolvedPose head = solver_.solve(used, upright_, start);
+      if (!head.found) continue;
+      heads[static_cast<std::size_t>(count++)] = head;
+      const SolvedPose twin = solver_.solve(used, upright_, turned_twin(pair, lone.p_H, head.X_RH));
+      if (twin.found) heads[static_cast<std::size_t>(count++)] = twin;
+    }
+    if (count == 0) return {};
+    const std::span<const SolvedPose> all = std::span(heads).first(static_cast<std::size_t>(count));
+    return yaw_known ? with_doubt(all.front(), all)
+                     : with_doubt(*std::min_element(all.begin(), all.end(),
+                                                    [](const auto& a, const auto& b) { return a.cost < b.cost; }),
+                                  all);
+  }
+
+  /// The head with its second LED where that LED's ray is as far again from the first.
+  [[nodiscard]] Pose turned_twin(std::span<const Sighting> pair, const Vector3d& known_H, const Pose& X_RH) const {
+    const Vector3d eye = pair[0].remote == 0 ? Vector3d(Vector3d::Zero()) : X_R1R2_.position;
+    const Vector3d known = X_RH * known_H;
+    const Vector3d other = X_RH * (pair[0].p_H == known_H ? pair[1] : pair[0]).p_H;
+    const Vector3d ray = (other - eye).normalized();
+    const Vector3d mirrored = other + 2 * ray.dot(known - other) * ray;
+    const Quaterniond turn = Quaterniond::FromTwoVectors(other - known, mirrored - known).normalized();
+    return {known + turn * (X_RH.position - known), (turn * X_RH.rotation).normalized()};
+  }
+
+  [[nodiscard]] SolvedPose with_doubt(SolvedPose head, std::span<const SolvedPose> all) {
+    const Pose X_RH = head.X_RH;
+    for (const SolvedPose& other : all) {
+      Vector6d apart;
+      apart << other.X_RH.position - X_RH.position,
+          vector_from_rotation((other.X_RH.rotation * X_RH.rotation.conjugate()).normalized());
+      if (other.cost > head.cost + settings().thresholds.twin_cost) continue;
+      if (apart.norm() > settings().thresholds.still_known) seen_fully_ = false;
+      head.covariance += 0.5 * apart * apart.transpose();  // as likely as this one
+    }
+    return head;
   }
 
   int follow_in(double t, int remote, std::span<Sighting> sightings) const {
@@ -137,14 +204,20 @@ class MultiPoint final : public TrackerBase {
     std::array<Sighting, kSightingsMax> sightings;
     int n = 0;
     Pose start;
+    bool exchanged = false;  // the LEDs, in every image: the head is half a turn from upright (half_turn.hpp)
     for (int remote = 0; remote < remotes_; ++remote) {
       const auto i = static_cast<std::size_t>(remote);
       if (std::abs(t - views_[i].t) > settings().thresholds.other_remote_max || !gravity(remote).known()) continue;
       followers_[i].forget();
       const PairFollower::Match match = followers_[i].match(t, views_[i].reading, gravity(remote).C_LR());
       if (!match.found()) continue;
-      const Assignment blobs = {match.blob[0], match.blob[1], -1, -1};
-      if (n == 0) start = in_first(match.pose, remote);
+      if (n == 0) {
+        start = in_first(match.pose, remote);
+        const Eigen::Vector2d roll = roll_of(gravity(0).C_LR() * (start.rotation * Vector3d::UnitX()));
+        exchanged = half_turn_.doubt(t, roll.x(), roll.y()) > 0.5;
+        if (exchanged) start.rotation = start.rotation * Quaterniond(0, 0, 0, 1);
+      }
+      const Assignment blobs = {match.blob[exchanged ? 1 : 0], match.blob[exchanged ? 0 : 1], -1, -1};
       n += sightings_of(views_[i].reading, settings().leds, blobs, remote,
                         std::span(sightings).subspan(static_cast<std::size_t>(n)));
     }
@@ -169,18 +242,28 @@ class MultiPoint final : public TrackerBase {
     const bool continued = followed_ && dt <= settings().thresholds.lost_head_memory;
     if (!continued)
       velocity_R_.setZero();
-    else if (dt > 1e-4)
+    else if (dt > 1e-4 && seen_fully_ == was_seen_fully_ && !reacquired_)  // what was learned anew is no motion
       velocity_R_ += settings().thresholds.velocity_gain * ((found_.X_RH.position - X_RH_.position) / dt - velocity_R_);
     velocity_R_ *= std::min(1.0, kSpeedMax / std::max(velocity_R_.norm(), 1e-9));
+    if (settings().leds.count == 2) {
+      const Eigen::Vector2d roll = roll_of(gravity(0).C_LR() * (found_.X_RH.rotation * Vector3d::UnitX()));
+      half_turn_.follow(t, roll.x(), roll.y());
+    }
     X_RH_ = found_.X_RH;
     t_followed_ = t;
     followed_ = true;
-    if (seen_fully_) t_full_ = t;
+    was_seen_fully_ = seen_fully_;
+    if (seen_fully_)
+      t_full_ = t;
+    else if (!continued)
+      t_full_ = kNever;  // the yaw that was seen once is another head's, for all that is known
   }
 
   void restart() override {
     followed_ = false;
-    for (View& view : views_) view.t = -std::numeric_limits<double>::infinity();
+    half_turn_.forget();
+    t_full_ = kNever;
+    for (View& view : views_) view.t = kNever;
   }
 
   std::string_view name_;
@@ -188,14 +271,17 @@ class MultiPoint final : public TrackerBase {
   Pose X_R1R2_;  ///< the second remote in coordinates of the first
   PoseSolver solver_;
   std::array<PairFollower, 2> followers_;
+  HalfTurn half_turn_;
   std::array<View, 2> views_;
   Upright upright_;
   SolvedPose found_;
   bool seen_fully_ = false;  ///< this report's sightings determine yaw
+  bool was_seen_fully_ = false;  ///< likewise, of the report before
+  bool reacquired_ = false;      ///< this report's head was searched anew
   bool followed_ = false;
   int unassigned_ = 0;  ///< reports in a row with missing LEDs and unassigned blobs
   double t_followed_ = 0;
-  double t_full_ = 0;
+  double t_full_ = kNever;  ///< when this head's yaw was seen last
   Pose X_RH_;  ///< followed pose
   Vector3d velocity_R_ = Vector3d::Zero();
 };

@@ -9,6 +9,7 @@
 #include "engine/base/random.hpp"
 #include "engine/wii/admission.hpp"
 #include "engine/wii/trajectories.hpp"
+#include "engine/wii/gravity.hpp"
 #include "engine/wii/two_led_covariance.hpp"
 
 namespace verisim::wii {
@@ -96,7 +97,6 @@ Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double 
   known.yaw_sigma = known.pitch_sigma = 0;
   const Pose X_RW = place.X_WR.inverse();
   const double emission = pinned::cos(options.emission_half_angle);
-  const double spacing = (known.leds.p_H[0] - known.leds.p_H[1]).norm();
   int covered = 0;
   double square = 0;
   for (const Pose& X_WH : options.heads) {
@@ -111,7 +111,9 @@ Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double 
     };
     if (!in_view(0) || !in_view(1)) continue;
     ++covered;
-    square += two_led_covariance(known, pinhole, spacing, X_RW * X_WH.position, 1, 0).diagonal().head<3>().sum();
+    Matrix6d covariance = two_led_covariance(known, pinhole, X_RW * X_WH.position, 1, 0);
+    add_tilt(covariance, X_RW * X_WH.position, Matrix3d::Identity(), known.gravity_sigma * known.gravity_sigma);
+    square += covariance.diagonal().head<3>().sum();
   }
   place.covered = static_cast<double>(covered) / static_cast<double>(options.heads.size());
   place.error = covered > 0 ? std::sqrt(square / covered) : std::numeric_limits<double>::infinity();

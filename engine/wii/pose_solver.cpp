@@ -5,6 +5,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/wii/gravity.hpp"
 
 namespace verisim::wii {
 namespace {
@@ -113,15 +114,14 @@ SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright&
   return solved;
 }
 
-void level(const SolvedPose& solved, const Matrix3d& C_LR, double tilt_sigma, Pose& X_LH, Matrix6d& covariance) {
+void level(const SolvedPose& solved, const Matrix3d& C_LR, double tilt_variance, Pose& X_LH, Matrix6d& covariance) {
   X_LH.position = C_LR * solved.X_RH.position;
   X_LH.rotation = (Quaterniond(C_LR) * solved.X_RH.rotation).normalized();
   Matrix6d turn = Matrix6d::Zero();
   turn.topLeftCorner<3, 3>() = C_LR;
   turn.bottomRightCorner<3, 3>() = C_LR;
-  Eigen::Matrix<double, 6, 3> lever;  // of the tilt vector on position and rotation
-  lever << -skew(X_LH.position), Matrix3d::Identity();
-  covariance = turn * solved.covariance * turn.transpose() + tilt_sigma * tilt_sigma * lever * lever.transpose();
+  covariance = turn * solved.covariance * turn.transpose();
+  add_tilt(covariance, X_LH.position, C_LR, tilt_variance);
 }
 
 }  // namespace verisim::wii

@@ -61,7 +61,7 @@ class PoseSolver {
   std::array<Vector3d, 2> p_iR_;
 };
 
-/// X_LH and its covariance in L from a pose in R: tilt of `tilt_sigma` turns everything about the pinhole.
-void level(const SolvedPose& solved, const Matrix3d& C_LR, double tilt_sigma, Pose& X_LH, Matrix6d& covariance);
+/// X_LH and its covariance in L from a pose in R, with tilt of `tilt_variance` [rad^2] (add_tilt).
+void level(const SolvedPose& solved, const Matrix3d& C_LR, double tilt_variance, Pose& X_LH, Matrix6d& covariance);
 
 }  // namespace verisim::wii

@@ -45,14 +45,16 @@ struct Thresholds {
   double pair_speed = 2000;   ///< pixel per s: 1.5 m/s at 1 m, for gaps of some reports
   double pair_memory = 0.25;  ///< s that a pair is followed for; a head needs longer to roll over
   double lost_head_memory = 0.25;    ///< s that a lost head is looked for where it was
-  double upright_cosine_min = -0.2;  ///< of the roll: no head is tilted by more than 101 degrees
+  double upright_cosine_min = -0.2;  ///< of the roll of three LEDs: no head is tilted by more than 101 degrees
   double size_scale = 1;             ///< blob size units: a true pair differs by no more
   double size_learning = 0.02;       ///< per report: cells run down slowly, and brightness with them
   double size_cost_max = 2;          ///< sizes of real sensors follow distance badly: a hint, no proof; not measured
+  double repetition_learning = 0.02;  ///< per coordinate pair
   double size_sigma = 0.5;           ///< blob size units: a size is a whole number
   double size_repeats = 50;          ///< reports that show the same rounding error of a size
   double led_scale = 10;          ///< pixel: how near further LEDs are to where the pair alone puts them; not measured
   double missing_led_cost = 100;  ///< of a further LED that is nowhere near its place; not measured
+  double twin_cost = 9;           ///< by which a second turn of the head may fit worse: three standard deviations
   int confirmations = 5;          ///< images in a row that confirm a jump to another pair
   int unassigned_reports = 5;     ///< with blobs that no LED explains, before a head is acquired anew …
   int unassigned_reports_filter = 3;  ///< … by scaat, which is surer of where LEDs are
@@ -83,6 +85,9 @@ struct Thresholds {
   double upright_time = 1;      ///< s: the prior pulls with this time constant where LEDs decide
   double prior_width = 2;       ///< times the settings' sigmas: where yaw is seen, the prior should hardly count
   double roll_sigma = 0.5;      ///< rad, about how far heads are tilted
+  double lying = 0.02;          ///< share of heads that are tilted much farther (half_turn.hpp)
+  double roll_speed = 1;        ///< rad/s that a head may roll by while it is not seen
+  double roll_noise = 0.1;      ///< rad, likewise between two reports
   double turn_rate = 0.3;       ///< rad/s: how fast a yaw that is no longer seen becomes unknown
   double still_known = 0.02;    ///< rad, of a yaw that was seen one report ago
 };

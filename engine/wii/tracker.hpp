@@ -4,9 +4,9 @@
 // coordinates L (gravity.hpp), whether that report may be used, and how sure it is. Rules that hold for every tracker
 // except vrpn-compatible, which does what VRPN does:
 //   - Nothing is valid before the first data; until then the pose is NaN.
-//   - A valid pose is 0.2 to 5 m away. It has moved since the last valid one by at most 5 m/s, or `reacquired` says
-//   that
-//     it stands elsewhere for a reason (first lock, after a loss, or confirmed by a second report).
+//   - A valid pose is 0.2 to 5 m away. It has moved since the last valid one by at most 5 m/s and turned by at most
+//     15 rad/s, or `reacquired` says that it stands elsewhere for a reason (first lock, after a loss, confirmed by a
+//     second report, or found to be half a turn from where it seemed to be).
 //   - A report that is not valid repeats the last estimate (scaat: its prediction).
 //   - Time that stands still or goes back by up to 1 s is no news; further back is a new recording, and starts anew.
 //   - No allocation and bounded work per update; nothing throws after make_tracker.
@@ -51,7 +51,8 @@ struct TrackerSettings {
   LedLayout leds;
   FieldOfView fov;
   double pixel_sigma = 0.4;            ///< pixel; rounding alone is 1/sqrt(12) = 0.29, with 0.3 px of noise 0.42
-  double gravity_sigma = 0.003;        ///< rad of tilt; rounding to 104 counts per g is 0.0028
+  /// rad of tilt that no averaging removes; rounding to 104 counts per g is 0.0028. What readings scatter is learned.
+  double gravity_sigma = 0.003;
   double gravity_time_constant = 0.1;  ///< s, smoothing of the accelerometer
   double yaw_sigma = 9 * kDegree;      ///< how far heads turn: what two LEDs cannot see
   double pitch_sigma = 5 * kDegree;    ///< how far heads nod

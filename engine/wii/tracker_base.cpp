@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 
 namespace verisim::wii {
 namespace {
 
 constexpr double kBackMax = 1;  // s, promised in tracker.hpp: a clock that goes further back belongs to a new recording
-constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -57,8 +57,15 @@ const Report& TrackerBase::update(double t, std::span<const double> channels, in
   return report_;
 }
 
+bool TrackerBase::turned_too_fast(double dt, const Pose& pose) const {
+  // |q . q'| is the cosine of half the angle. A rounding must not be told from a turn.
+  const double half = 0.5 * settings_.thresholds.spin_max * std::abs(dt) * 0.999;
+  return half < pinned::kPi / 2 && std::abs(report_.pose.rotation.dot(pose.rotation)) < pinned::cos(half);
+}
+
 void TrackerBase::conclude(double t, Estimate& result) {
   const bool was_valid = report_.valid;
+  const double before = report_.t;
   Admission::Verdict verdict = Admission::Verdict::refused;
   if (result.usable) {
     const Vector3d measured = result.pose.position;
@@ -70,7 +77,8 @@ void TrackerBase::conclude(double t, Estimate& result) {
   report_.t = t;
   report_.news = true;
   report_.valid = verdict != Admission::Verdict::refused;
-  report_.reacquired = report_.valid && (!was_valid || verdict == Admission::Verdict::elsewhere);
+  report_.reacquired = report_.valid && (!was_valid || verdict == Admission::Verdict::elsewhere ||
+                                         turned_too_fast(t - before, result.pose));
   if (report_.valid || (result.known && !result.usable)) {
     report_.pose = result.pose;
     report_.covariance = result.covariance;

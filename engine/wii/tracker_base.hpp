@@ -8,6 +8,8 @@
 
 namespace verisim::wii {
 
+inline constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< s, of what has not happened
+
 /// Where the head seems to be after one report.
 struct Estimate {
   Pose pose;  ///< X_LH
@@ -38,10 +40,16 @@ class TrackerBase : public Tracker {
   [[nodiscard]] const TrackerSettings& settings() const { return settings_; }
   [[nodiscard]] const Pinhole& pinhole() const { return pinhole_; }
   [[nodiscard]] const GravityFilter& gravity(int remote) const { return gravity_[static_cast<std::size_t>(remote)]; }
+  /// Of the first remote's levelling [rad^2]: constant errors and scattered readings.
+  [[nodiscard]] double tilt_variance() const {
+    return settings_.gravity_sigma * settings_.gravity_sigma + gravity_[0].tilt_variance();
+  }
 
  private:
   bool accept_time(double t, int remote, double& dt);
   void conclude(double t, Estimate& result);
+  /// For a head, within `dt` since the report before.
+  [[nodiscard]] bool turned_too_fast(double dt, const Pose& pose) const;
 
   TrackerSettings settings_;
   Pinhole pinhole_;

@@ -6,6 +6,7 @@
 
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
+#include "engine/base/random.hpp"
 
 namespace verisim::wii {
 namespace {
@@ -20,6 +21,12 @@ constexpr std::array kHeight_ = {Sine{5.0 * kDegree, 0.13, 1.3}, Sine{1.5 * kDeg
 constexpr std::array kYaw = {Sine{12 * kDegree, 0.17, 0.5}, Sine{5 * kDegree, 0.60, 1.7}};
 constexpr std::array kPitch = {Sine{6 * kDegree, 0.14, 1.0}, Sine{3 * kDegree, 0.70, 0.4}};
 constexpr std::array kRoll = {Sine{9 * kDegree, 0.12, 2.1}, Sine{4 * kDegree, 0.55, 0.9}};
+
+constexpr int kTurnSamples = 200;
+constexpr double kAside = 5 * kDegree;
+/// Powers of the inverse root of x^5 = x + 1, as fractions of 2^64: the most even spread in four dimensions (Roberts
+/// 2018).
+constexpr std::array<std::uint64_t, 4> kStartSteps = {0xdb4f0b9175ae2165, 0xbbe0563303a4615f, 0xa0f2ec75a1fe1575, 0x89e182857d9ed688};
 
 Situation level_remote(const Vector3d& p_L, const Quaterniond& R_LH = Quaterniond::Identity()) {
   return {.X_WR = {}, .X_WH = {p_L, R_LH}};
@@ -59,6 +66,12 @@ Situation seated(double t) {
   const std::array roll = {Sine{5 * kDegree, 0.2, 0.5}};
   return level_remote({sum_of_sines(side, t), sum_of_sines(up, t), 1 + sum_of_sines(depth, t)},
                       head_rotation(0, 0, sum_of_sines(roll, t)));
+}
+
+Situation far(double t) {
+  Situation s = seated(t);
+  s.X_WH.position.z() += 1;
+  return s;
 }
 
 Situation tilted(double t) {
@@ -118,6 +131,7 @@ std::vector<Trajectory> make_trajectories() {
       {"grid", "at rest in 45 places, 0.6 to 2 m", kGridDuration, grid, between_cells(), {}},
       {"sweep-x", "0.28 m to either side at 1 m", 10, sweep_x, {}, {}},
       {"sweep-z", "0.4 to 2 m in front", 10, sweep_z, {}, {}},
+      {"far", "seated, 2 m in front", 20, far, {}, {}},
       {"natural", "natural motion, no yaw", 30, [](double t) { return natural(t, false); }, {}, {}},
       {"natural-yaw", "natural motion, with yaw", 30, [](double t) { return natural(t, true); }, {}, {}},
       {"edges", "out of view on either side", 20, edges, {}, {}},
@@ -175,6 +189,35 @@ Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, s
     return level_remote(a.position + s * (b.position - a.position), slerp(a.rotation, b.rotation, s));
   };
   return path;
+}
+
+Trajectory from_start_pose(const Trajectory& path, double yaw_sigma, double pitch_sigma, std::uint64_t seed) {
+  VERISIM_ASSERT(is_not_negative(yaw_sigma));
+  VERISIM_ASSERT(is_not_negative(pitch_sigma));
+  double yaw_square = 0, pitch_square = 0;
+  for (int i = 0; i < kTurnSamples; ++i) {
+    const Matrix3d R_LH = levelled_pose(path.at(path.duration * i / kTurnSamples)).rotation.toRotationMatrix();
+    yaw_square += R_LH(2, 0) * R_LH(2, 0) / kTurnSamples;  // sines of yaw and pitch, nearly
+    pitch_square += R_LH(2, 1) * R_LH(2, 1) / kTurnSamples;
+  }
+  // Multiples of the steps of a Kronecker sequence, within -1 and 1: any few seeds in a row are spread evenly.
+  const RandomStream random(0, path.name + "/start");
+  const auto even = [&](std::uint64_t k) {
+    const double here = random.uniform(k) + static_cast<double>(seed * kStartSteps[k] >> 11U) * 0x1p-53;
+    return 2 * (here - std::floor(here)) - 1;
+  };
+  const auto turn = [&](std::uint64_t k, double sigma, double own_square) {
+    return even(k) * std::sqrt(3 * std::max(0.0, sigma * sigma - own_square));
+  };
+  const Quaterniond R_H = head_rotation(turn(0, yaw_sigma, yaw_square), turn(1, pitch_sigma, pitch_square), 0);
+  const Quaterniond R_W = head_rotation(kAside * even(2), kAside * even(3), 0);
+  Trajectory there = path;
+  there.at = [=, at = path.at](double t) {
+    Situation s = at(t);
+    s.X_WH = {R_W * s.X_WH.position, (s.X_WH.rotation * R_H).normalized()};
+    return s;
+  };
+  return there;
 }
 
 const std::vector<Trajectory>& trajectories() {

@@ -125,8 +125,10 @@ ValidationRow validate_one(const std::string& tracker, const Trajectory& path, c
   const RemoteSettings remote = remote_settings(sensor.settings, path, settings.leds, set_up);
   settings.fov = remote.fov;
   if (who.entry.remotes == 2) settings.X_R1R2 = second_remote();
+  const Trajectory begun =
+      options.start_poses ? from_start_pose(path, settings.yaw_sigma, settings.pitch_sigma, options.seed) : path;
   const std::vector<Sensed> all =
-      sense_run(remote, placed(path, set_up), who.entry.remotes, options.seed, set_up.latency.value_or(0));
+      sense_run(remote, placed(begun, set_up), who.entry.remotes, options.seed, set_up.latency.value_or(0));
 
   const std::unique_ptr<Tracker> judged = make_tracker(who.entry.name, settings, options.known);
   ValidationFigures figures;

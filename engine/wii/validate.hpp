@@ -65,6 +65,7 @@ struct ValidationOptions {
   Trackers known = wii::trackers();       ///< the table that the names above are looked up in
   std::uint64_t seed = 1;
   int seeds = 1;                     ///< seed, seed + 1, …: rows are their means
+  bool start_poses = false;          ///< each seed begins from a pose of its own (from_start_pose)
   SetUp set_up = {};                 ///< of every run
   TrackerSettings tracker;           ///< of every tracker; each adds the LEDs and the second remote that it needs
   std::vector<Trajectory> recorded;  ///< further motions; alone, if no others are named

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/wii/trackers.hpp"
+#include "engine/wii/gravity.hpp"
 #include "engine/wii/two_led_covariance.hpp"
 
 namespace verisim::wii {
@@ -123,7 +124,9 @@ class VrpnCompatible final : public Tracker {
     if (!level) report_.pose.rotation = report_.pose.rotation * levelling_;  // slip: about the head's axes
     // Upstream claims no accuracy. This is what its sensor would allow, for comparison with its errors.
     report_.covariance =
-        two_led_covariance(settings_, pinhole_, spacing_, report_.pose.position, pinned::cos(roll), pinned::sin(roll));
+        two_led_covariance(settings_, pinhole_, report_.pose.position, pinned::cos(roll), pinned::sin(roll));
+    add_tilt(report_.covariance, report_.pose.position, Matrix3d::Identity(),
+             settings_.gravity_sigma * settings_.gravity_sigma);
   }
 
   TrackerSettings settings_;

@@ -61,7 +61,8 @@ TEST(TwoPointsDeathTest, AreTwoRaysToTwoLeds) {
                 "!(leds.p0_H - leds.p1_H).head<2>().isZero(0)");
   EXPECT_BROKEN(rotation_about_z(1, 0.1),
                 "std::abs(cos_angle * cos_angle + sin_angle * sin_angle - 1) < kUnitTolerance");
-  EXPECT_BROKEN(two_led_covariance({}, Pinhole{FieldOfView()}, 0, ahead, 1, 0), "spacing > 0");
+  const Vector3d nowhere(0, 0, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_BROKEN(two_led_covariance({}, Pinhole{FieldOfView()}, nowhere, 1, 0), "is_finite(p_L)");
 }
 
 TEST(AssignmentDeathTest, NamesBlobsOfItsReading) {
