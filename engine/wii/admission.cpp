@@ -5,13 +5,6 @@
 #include "engine/base/error.hpp"
 
 namespace verisim::wii {
-namespace {
-
-// A limit kept in exact arithmetic would be missed by a rounding in a reader's check: stay a little below it.
-constexpr double kWithin = 0.999;
-
-}  // namespace
-
 bool Admission::reachable(const Place& from, double t, double variance, const Vector3d& p_L) const {
   if (!from.set) return false;
   const double way = kWithin * kSpeedMax * std::abs(t - from.t);

@@ -12,6 +12,9 @@ inline constexpr double kDistanceMax = 5;    ///< m
 inline constexpr double kSpeedMax = 5;       ///< m/s: heads are slower
 inline constexpr double kSilenceMax = 0.5;   ///< s: after that nothing is known of where the head went
 
+/// A limit kept in exact arithmetic would be missed by a rounding in a reader's check: stay a little below it.
+inline constexpr double kWithin = 0.999;
+
 /// Decides on one candidate position after another. Constant time and size.
 class Admission {
  public:

@@ -10,11 +10,17 @@
 namespace verisim::wii {
 namespace {
 
-constexpr int kIterations = 12;  // a bound of the work: usually 2 are enough, and who needs more is not found
+constexpr int kIterations = 20;  // a bound of the work: usually 2 are enough, and who needs more is not found
 // A step of a hundredth of the pose's own standard deviation changes nothing that is known. (A limit in metres would
 // wait for directions that hardly anything determines.)
 constexpr double kConverged = 1e-4;
 constexpr double kDepthMin = 0.05;  // m, in front of the lens: a limit of the task, a quarter of kDistanceMin
+
+constexpr double kNoWorse = 1 + 1e-9;  // beside a minimum the cost only rounds
+
+Pose moved(const Pose& X_RH, const Vector6d& move) {
+  return {X_RH.position + move.head<3>(), (rotation_from_vector(move.tail<3>()) * X_RH.rotation).normalized()};
+}
 
 }  // namespace
 
@@ -92,22 +98,31 @@ SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright&
   VERISIM_ASSERT(upright.sigma_y > 0);
   VERISIM_ASSERT(upright.sigma_roll > 0);
   SolvedPose solved;
-  solved.X_RH = start;
+  Pose at = start;
+  Vector6d move = Vector6d::Zero();
+  Matrix6d A = Matrix6d::Zero();  // at solved.X_RH
+  double best_cost = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kIterations; ++step) {
     Normal normal;
-    if (!accumulate(sightings, upright, solved.X_RH, normal)) return solved;
-    const Eigen::LLT<Matrix6d> factor(normal.A);
-    if (factor.info() != Eigen::Success) return solved;
-    Vector6d move = factor.solve(normal.b);
-    const double length = move.cwiseAbs().maxCoeff();
-    if (!std::isfinite(length)) return solved;
-    const bool converged = move.dot(normal.b) < kConverged;  // = move^T A move
-    if (length > step_max_) move *= step_max_ / length;
-    solved.X_RH.position += move.head<3>();
-    solved.X_RH.rotation = (rotation_from_vector(move.tail<3>()) * solved.X_RH.rotation).normalized();
-    solved.cost = normal.cost;
-    if (!converged) continue;
-    solved.covariance = factor.solve(Matrix6d::Identity());
+    const bool in_front = accumulate(sightings, upright, at, normal);
+    if (!in_front && step == 0) return solved;
+    if (in_front && normal.cost <= best_cost * kNoWorse) {
+      solved.X_RH = at;
+      solved.cost = best_cost = normal.cost;
+      A = normal.A;
+      const Eigen::LLT<Matrix6d> factor(A);
+      if (factor.info() != Eigen::Success) return solved;
+      move = factor.solve(normal.b);
+      const double length = move.cwiseAbs().maxCoeff();
+      if (!std::isfinite(length)) return solved;
+      if (length > step_max_) move *= step_max_ / length;
+    } else {
+      move /= 2;  // too far, where residuals bend
+    }
+    at = moved(solved.X_RH, move);
+    if (!(move.dot(A * move) < kConverged)) continue;
+    solved.X_RH = at;
+    solved.covariance = A.llt().solve(Matrix6d::Identity());
     solved.found = true;
     return solved;
   }

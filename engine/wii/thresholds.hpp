@@ -28,6 +28,7 @@ struct Thresholds {
   double start_speed = 0.5;    ///< m/s, standard deviation of a head's that was just found: heads at work are slow
   double start_spin = 1;       ///< rad/s, likewise
   double spin_max = 15;        ///< rad/s: faster than any head turns
+  double slack_turn = 0.5;       ///< rad that measuring noise may turn a head by beyond that, however unsure it is
   double velocity_gain = 0.5;  ///< share of the newest difference in the velocity of trackers without a filter
 
   // Which blob is which LED (assignment.cpp, acquisition.cpp, multi_point.cpp, scaat.cpp).
@@ -54,7 +55,6 @@ struct Thresholds {
   double size_repeats = 50;          ///< reports that show the same rounding error of a size
   double led_scale = 10;          ///< pixel: how near further LEDs are to where the pair alone puts them; not measured
   double missing_led_cost = 100;  ///< of a further LED that is nowhere near its place; not measured
-  double twin_cost = 9;           ///< by which a second turn of the head may fit worse: three standard deviations
   int confirmations = 5;          ///< images in a row that confirm a jump to another pair
   int unassigned_reports = 5;     ///< with blobs that no LED explains, before a head is acquired anew …
   int unassigned_reports_filter = 3;  ///< … by scaat, which is surer of where LEDs are
@@ -64,6 +64,7 @@ struct Thresholds {
 
   // Two remotes.
   double other_remote_max = 0.03;  ///< s: three reports; an older image of the other remote is no use
+  double lone_blob_memory = 0.05;  ///< s for which a blob that is alone in one image is the LED that it was
   double both_silent = 0.05;       ///< s without the first remote after which the second reports
 
   // Gravity (gravity.cpp).

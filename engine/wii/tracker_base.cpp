@@ -57,10 +57,20 @@ const Report& TrackerBase::update(double t, std::span<const double> channels, in
   return report_;
 }
 
-bool TrackerBase::turned_too_fast(double dt, const Pose& pose) const {
-  // |q . q'| is the cosine of half the angle. A rounding must not be told from a turn.
-  const double half = 0.5 * settings_.thresholds.spin_max * std::abs(dt) * 0.999;
-  return half < pinned::kPi / 2 && std::abs(report_.pose.rotation.dot(pose.rotation)) < pinned::cos(half);
+bool TrackerBase::turned_too_fast(double dt, Estimate& result) const {
+  const Thresholds& n = settings_.thresholds;
+  const double limit = kWithin * n.spin_max * std::abs(dt);
+  const Quaterniond turn = (result.pose.rotation * report_.pose.rotation.conjugate()).normalized();
+  // |w| is the cosine of half the angle: nearly always no more than this is computed.
+  if (limit >= pinned::kPi || std::abs(turn.w()) >= pinned::cos(limit / 2)) return false;
+  const Vector3d turned = vector_from_rotation(turn);
+  const double sigma = std::sqrt(result.covariance.diagonal().tail<3>().maxCoeff());
+  if (turned.norm() > limit + std::min(n.slack_sigmas * sigma, n.slack_turn)) return true;
+  const Vector3d kept = turned * (limit / turned.norm());
+  const Vector3d drawn = turned - kept;
+  result.pose.rotation = (rotation_from_vector(kept) * report_.pose.rotation).normalized();
+  result.covariance.bottomRightCorner<3, 3>() += drawn * drawn.transpose();
+  return false;
 }
 
 void TrackerBase::conclude(double t, Estimate& result) {
@@ -78,7 +88,7 @@ void TrackerBase::conclude(double t, Estimate& result) {
   report_.news = true;
   report_.valid = verdict != Admission::Verdict::refused;
   report_.reacquired = report_.valid && (!was_valid || verdict == Admission::Verdict::elsewhere ||
-                                         turned_too_fast(t - before, result.pose));
+                                         turned_too_fast(t - before, result));
   if (report_.valid || (result.known && !result.usable)) {
     report_.pose = result.pose;
     report_.covariance = result.covariance;

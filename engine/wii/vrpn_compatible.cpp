@@ -122,6 +122,7 @@ class VrpnCompatible final : public Tracker {
     report_.pose.position = {x, y, z};  // slip: never levelled
     report_.pose.rotation = {pinned::cos(roll / 2), 0, 0, pinned::sin(roll / 2)};
     if (!level) report_.pose.rotation = report_.pose.rotation * levelling_;  // slip: about the head's axes
+    if (!report_.pose.position.allFinite()) return;  // and the report before stays
     // Upstream claims no accuracy. This is what its sensor would allow, for comparison with its errors.
     report_.covariance =
         two_led_covariance(settings_, pinhole_, report_.pose.position, pinned::cos(roll), pinned::sin(roll));
