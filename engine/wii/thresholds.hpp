@@ -88,7 +88,10 @@ struct Thresholds {
   double roll_sigma = 0.5;      ///< rad, about how far heads are tilted
   double lying = 0.02;          ///< share of heads that are tilted much farther (half_turn.hpp)
   double roll_speed = 1;        ///< rad/s that a head may roll by while it is not seen
-  double roll_noise = 0.1;      ///< rad, likewise between two reports
+  double roll_noise = 0.1;      ///< rad, likewise at once
+  double seen_gap = 0.05;       ///< s between reports that see a pair: it does not turn over in between
+  double posture_kept = 3;      ///< s for which a head that is not seen stays as it was
+  double posture_time = 10;     ///< s in which seeing a head upright, or not, counts as much as seeing it at first
   double turn_rate = 0.3;       ///< rad/s: how fast a yaw that is no longer seen becomes unknown
   double still_known = 0.02;    ///< rad, of a yaw that was seen one report ago
 };
