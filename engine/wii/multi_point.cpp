@@ -133,7 +133,8 @@ class MultiPoint final : public TrackerBase {
 
   /// A pair in one image and one of its LEDs in the other. The distance to that LED is known, and the second lies on its
   /// ray, before or behind where the ray comes nearest to the first: two turns. While the yaw is not known, the lone
-  /// blob may also be either LED. It is used if one of these heads fits and no other does, and else left out.
+  /// blob may also be either LED. If several of these heads are likely, the lone blob is left out; if none fits, a blob
+  /// is no LED, and there is no head.
   [[nodiscard]] SolvedPose solve_with_a_lone_blob(double t, std::span<Sighting> used, bool yaw_known) {
     const bool pair_first = used[0].remote == used[1].remote;
     Sighting& lone = pair_first ? used[2] : used[0];
@@ -141,34 +142,38 @@ class MultiPoint final : public TrackerBase {
     const Pose start = predicted(t);
     std::array<SolvedPose, 4> heads;
     std::size_t count = 0;
-    for (int i = 0; i < (yaw_known ? 1 : 2); ++i) {
+    double best = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 2 && !(yaw_known && best <= kFits); ++i) {
       const bool first_is_lone = (lone.p_H == pair[0].p_H) != (i == 1);
       const Sighting& same = first_is_lone ? pair[0] : pair[1];
       const Sighting& other = first_is_lone ? pair[1] : pair[0];
       lone.p_H = same.p_H;
       for (const double side : {1.0, -1.0}) {
         const SolvedPose head = solver_.solve(used, upright_, start_of_turn(lone, same, other, side, start.rotation));
-        if (head.found) heads[count++] = judged(head, yaw_known);
+        if (!head.found) continue;
+        heads[count] = judged(head, yaw_known);
+        best = std::min(best, heads[count++].cost);
       }
     }
-    SolvedPose head = the_only_one(std::span(heads).first(count));
+    if (!(best <= kFits)) return {};
+    const SolvedPose head = the_only_one(std::span(heads).first(count));
     if (head.found) return head;
     seen_fully_ = false;
     take_last_as_prior(t, upright_);
     return solver_.solve(pair, upright_, start);
   }
 
-  /// The head that fits, if no other is likely. All others widen its covariance, as likely as they are.
+  /// The head of least cost, if no other is likely. All others widen its covariance, as likely as they are.
+  /// @pre there is one
   [[nodiscard]] static SolvedPose the_only_one(std::span<const SolvedPose> heads) {
-    const auto best =
-        std::min_element(heads.begin(), heads.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
-    if (best == heads.end() || best->cost > kFits) return {};
-    SolvedPose head = *best;
+    const SolvedPose& best =
+        *std::min_element(heads.begin(), heads.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    SolvedPose head = best;
     for (const SolvedPose& other : heads) {
       Vector6d apart;
-      apart << other.X_RH.position - best->X_RH.position,
-          vector_from_rotation((other.X_RH.rotation * best->X_RH.rotation.conjugate()).normalized());
-      const double likely = 1 / (1 + pinned::exp((other.cost - best->cost) / 2));
+      apart << other.X_RH.position - best.X_RH.position,
+          vector_from_rotation((other.X_RH.rotation * best.X_RH.rotation.conjugate()).normalized());
+      const double likely = 1 / (1 + pinned::exp((other.cost - best.cost) / 2));
       if (likely > kLikely && apart.tail<3>().norm() > kSameTurn) return {};
       head.covariance += likely * apart * apart.transpose();
     }

@@ -45,7 +45,7 @@ class Scaat final : public TrackerBase {
       if (predictable) seen = correct_with(reading, C_LR, dt);
       view_ = view_of(seen);
       unassigned_ = seen < 2 && reading.blob_count >= 2 ? unassigned_ + 1 : 0;
-      lost_ = !predictable || stands_on_its_crown(C_LR) || unassigned_ >= settings().thresholds.unassigned_reports_filter;
+      lost_ = !predictable || unassigned_ >= settings().thresholds.unassigned_reports_filter;
       if (settings().leds.count == 2 && seen == 2) reconsider(C_LR);
     }
     if ((!running_ || lost_) && acquire(t, reading, C_LR)) seen = settings().leds.count;
@@ -167,12 +167,6 @@ class Scaat final : public TrackerBase {
   }
 
   // ---- finding the head
-
-  /// Three LEDs show which way round they are: what they mean then is no head.
-  [[nodiscard]] bool stands_on_its_crown(const Matrix3d& C_LR) const {
-    return settings().leds.count > 2 &&
-           (C_LR.row(1) * filter_.R_RH().col(1)).value() < settings().thresholds.upright_cosine_min;
-  }
 
   /// A pair of which one blob is clutter moves as smoothly as a head. Only its cost tells, so it is compared with the
   /// other pairs in every report.
