@@ -53,7 +53,7 @@ Assignment nearest_assignment(const Reading& reading, std::span<const Eigen::Vec
 }
 
 PairFollower::PairFollower(const LedLayout& leds, const Pinhole& pinhole, const Thresholds& thresholds)
-    : leds_(leds), pinhole_(pinhole), pair_{leds.p_H[0], leds.p_H[1]}, thresholds_(thresholds) {
+    : leds_(leds), pinhole_(pinhole), pair_{leds.p_H[0], leds.p_H[1]}, thresholds_(thresholds), clutter_(thresholds) {
   VERISIM_ASSERT(leds.count >= 2);
   VERISIM_ASSERT(leds.count <= kLedsMax);
 }
@@ -84,10 +84,6 @@ PairFollower::Match PairFollower::reconsidered(const Reading& reading, const Mat
   // One image does not confirm a jump. Once confirmed, the other pair is returned until it is followed.
   confirmations_ = other.found() ? std::min(confirmations_ + 1, thresholds_.confirmations) : 0;
   return confirmations_ < thresholds_.confirmations ? current : other;
-}
-
-bool PairFollower::is_clutter(const Blob& blob, double distance_square_to_led) const {
-  return distance_square_to_clutter(blob) < distance_square_to_led;
 }
 
 PairFollower::Match PairFollower::continue_pair(double age, const Reading& reading, const Matrix3d& C_LR) const {
@@ -122,8 +118,7 @@ PairFollower::Match PairFollower::acquire(const Reading& reading, const Matrix3d
 PairFollower::Match PairFollower::least_cost_pair(const Reading& reading, const Matrix3d& C_LR, bool clutter_too,
                                                   double& cost) const {
   const auto is_near_clutter = [&](int b) {
-    return !clutter_too && distance_square_to_clutter(reading.blobs[static_cast<std::size_t>(b)]) <
-                               thresholds_.clutter_radius * thresholds_.clutter_radius;
+    return !clutter_too && clutter_.holds(reading.blobs[static_cast<std::size_t>(b)]);
   };
   Match best;
   for (int i = 0; i < reading.blob_count; ++i)
@@ -137,13 +132,6 @@ PairFollower::Match PairFollower::least_cost_pair(const Reading& reading, const 
       cost = here;
     }
   return best;
-}
-
-double PairFollower::distance_square_to_clutter(const Blob& blob) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < clutter_count_; ++i)
-    nearest = std::min(nearest, distance_square(blob, clutter_[static_cast<std::size_t>(i)]));
-  return nearest;
 }
 
 double PairFollower::cost_of(const Reading& reading, const Match& match, const Matrix3d& C_LR) const {
@@ -181,10 +169,7 @@ void PairFollower::follow(double t, const Reading& reading, const Match& match) 
   for (std::size_t i = 0; i < 2; ++i) last_[i] = reading.blobs[static_cast<std::size_t>(match.blob[i])];
   const double size_at_1m = (last_[0].size + last_[1].size) / 2 * match.pose.p_L.norm();
   size_at_1m_ = size_at_1m_ > 0 ? size_at_1m_ + thresholds_.size_learning * (size_at_1m - size_at_1m_) : size_at_1m;
-  clutter_count_ = 0;
-  for (int b = 0; b < reading.blob_count; ++b)
-    if (b != match.blob[0] && b != match.blob[1])
-      clutter_[static_cast<std::size_t>(clutter_count_++)] = reading.blobs[static_cast<std::size_t>(b)];
+  clutter_.learn(reading, match.blob);
 }
 
 }  // namespace verisim::wii

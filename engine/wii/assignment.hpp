@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "engine/wii/clutter.hpp"
 #include "engine/wii/tracker.hpp"
 #include "engine/wii/two_point.hpp"
 
@@ -49,13 +50,15 @@ class PairFollower {
   /// fewer than three blobs.
   [[nodiscard]] Match reconsidered(const Reading& reading, const Match& current, const Matrix3d& C_LR);
   /// Whether a blob is nearer to clutter in the image that was followed last than to an LED's place [pixel^2].
-  [[nodiscard]] bool is_clutter(const Blob& blob, double distance_square_to_led) const;
+  [[nodiscard]] bool is_clutter(const Blob& blob, double distance_square_to_led) const {
+    return clutter_.distance_square(blob) < distance_square_to_led;
+  }
   /// Follow these two from now on; all other blobs of this image are clutter.
   /// @pre t is finite; the match's blobs are two of the reading's
   void follow(double t, const Reading& reading, const Match& match);
   void forget() {
     followed_ = false;
-    clutter_count_ = 0;
+    clutter_.forget();
     confirmations_ = 0;
     size_at_1m_ = 0;
   }
@@ -67,7 +70,6 @@ class PairFollower {
   /// The pair of least cost, if that is below `cost`, which becomes it.
   [[nodiscard]] Match least_cost_pair(const Reading& reading, const Matrix3d& C_LR, bool clutter_too,
                                       double& cost) const;
-  [[nodiscard]] double distance_square_to_clutter(const Blob& blob) const;
   [[nodiscard]] double cost_of(const Reading& reading, const Match& match, const Matrix3d& C_LR) const;
 
   LedLayout leds_;
@@ -77,8 +79,7 @@ class PairFollower {
   bool followed_ = false;
   double t_ = 0;
   std::array<Blob, 2> last_;
-  std::array<Blob, kSlots> clutter_;  ///< the other blobs of that image
-  int clutter_count_ = 0;
+  Clutter clutter_;        ///< the other blobs of that image
   int confirmations_ = 0;  ///< images in a row in which another pair cost less
   double size_at_1m_ = 0;  ///< of the LEDs' blobs, learned; 0: not known
 };

@@ -27,7 +27,8 @@ class MultiPoint final : public TrackerBase {
         solver_(settings),
         followers_{PairFollower(settings.leds, pinhole(), settings.thresholds),
                    PairFollower(settings.leds, pinhole(), settings.thresholds)},
-        half_turn_(settings.thresholds) {}
+        half_turn_(settings.thresholds),
+        clutter_{Clutter(settings.thresholds), Clutter(settings.thresholds)} {}
 
   [[nodiscard]] std::string_view name() const override { return name_; }
 
@@ -96,7 +97,11 @@ class MultiPoint final : public TrackerBase {
     reacquired_ = true;
     if (remotes_ == 2) return acquire_pairs(t);
     seen_fully_ = true;
-    return acquire_head(views_[0].reading, settings(), pinhole(), solver_, upright_).solved;
+    const Reading reading = clutter_[0].removed_from(views_[0].reading);
+    const Acquired all = acquire_head(reading, settings(), pinhole(), solver_, upright_, size_);
+    if (all.solved.found) return all.solved;
+    seen_fully_ = false;
+    return acquire_head_from_two(reading, settings(), pinhole(), solver_, upright_, size_).solved;
   }
 
   /// LEDs are missing and blobs unassigned: a blob that is followed may be clutter.
@@ -222,7 +227,7 @@ class MultiPoint final : public TrackerBase {
     return s.remote == 0 ? Ray{Vector3d::Zero(), ray} : Ray{X_R1R2_.position, X_R1R2_.rotation * ray};
   }
 
-  int follow_in(double t, int remote, std::span<Sighting> sightings) const {
+  int follow_in(double t, int remote, std::span<Sighting> sightings) {
     const View& view = views_[static_cast<std::size_t>(remote)];
     if (std::abs(t - view.t) > settings().thresholds.other_remote_max) return 0;
     std::array<Eigen::Vector2d, kLedsMax> then;  // where the LEDs were when this image was taken
@@ -234,11 +239,17 @@ class MultiPoint final : public TrackerBase {
       if (!solver_.project(predicted(t), p_H, remote, now[led])) return 0;
     }
     const double gate = settings().thresholds.gate + settings().thresholds.gate_growth * std::abs(t - t_followed_);
-    const Assignment blobs = nearest_assignment(view.reading, std::span(then).first(leds), gate);
+    Assignment& blobs = assigned_[static_cast<std::size_t>(remote)];
+    blobs = nearest_assignment(view.reading, std::span(then).first(leds), gate);
     int n = 0;
     for (std::size_t led = 0; led < leds; ++led) {
       if (blobs[led] < 0) continue;
       const Blob& b = view.reading.blobs[static_cast<std::size_t>(blobs[led])];
+      const double off = (Eigen::Vector2d(b.u, b.v) - then[led]).squaredNorm();
+      if (clutter_[static_cast<std::size_t>(remote)].distance_square(b) < off || is_no_led(b, remote, t, led)) {
+        blobs[led] = -1;
+        continue;
+      }
       const Eigen::Vector2d moved = now[led] - then[led];
       sightings[static_cast<std::size_t>(n++)] = {settings().leds.p_H[led], b.u + moved.x(), b.v + moved.y(), remote};
     }
@@ -255,7 +266,8 @@ class MultiPoint final : public TrackerBase {
       const auto i = static_cast<std::size_t>(remote);
       if (std::abs(t - views_[i].t) > settings().thresholds.other_remote_max || !gravity(remote).known()) continue;
       followers_[i].forget();
-      const PairFollower::Match match = followers_[i].match(t, views_[i].reading, gravity(remote).C_LR());
+      const Reading reading = clutter_[i].removed_from(views_[i].reading);
+      const PairFollower::Match match = followers_[i].match(t, reading, gravity(remote).C_LR());
       if (!match.found()) continue;
       if (n == 0) {
         start = in_first(match.pose, remote);
@@ -264,7 +276,7 @@ class MultiPoint final : public TrackerBase {
         if (exchanged) start.rotation = start.rotation * Quaterniond(0, 0, 0, 1);
       }
       const Assignment blobs = {match.blob[exchanged ? 1 : 0], match.blob[exchanged ? 0 : 1], -1, -1};
-      n += sightings_of(views_[i].reading, settings().leds, blobs, remote,
+      n += sightings_of(reading, settings().leds, blobs, remote,
                         std::span(sightings).subspan(static_cast<std::size_t>(n)));
     }
     if (n < 2) return {};
@@ -282,7 +294,29 @@ class MultiPoint final : public TrackerBase {
     return {X_RH_.position + (t - t_followed_) * velocity_R_, X_RH_.rotation};
   }
 
+  /// A light of another size than the LEDs': a lamp that came where an LED was expected.
+  [[nodiscard]] bool is_no_led(const Blob& b, int remote, double t, std::size_t led) const {
+    if (remote != 0 || !(size_.at_1m > 0)) return false;
+    const double distance = (predicted(t) * settings().leds.p_H[led]).norm();
+    return std::abs(b.size - std::clamp(size_.at_1m / distance, 1.0, 15.0)) > settings().thresholds.size_spread;
+  }
+
+  /// Where the whole head is seen, all else is clutter.
+  void learn_clutter(bool valid) {
+    const auto leds = static_cast<std::size_t>(settings().leds.count);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(remotes_); ++i) {
+      const auto all = std::span(assigned_[i]).first(leds);
+      if (valid && std::find(all.begin(), all.end(), -1) == all.end()) {
+        clutter_[i].learn(views_[i].reading, all);
+        if (i == 0) learn_size(size_, views_[i].reading, settings(), assigned_[i], found_.X_RH);
+      } else
+        clutter_[i].follow(views_[i].reading);
+      assigned_[i].fill(-1);
+    }
+  }
+
   void admitted(double t, bool valid) override {
+    learn_clutter(valid && !reacquired_);
     if (!valid) return;
     const double dt = t - t_followed_;
     const bool continued = followed_ && dt <= settings().thresholds.lost_head_memory;
@@ -307,6 +341,8 @@ class MultiPoint final : public TrackerBase {
 
   void restart() override {
     followed_ = false;
+    for (Clutter& clutter : clutter_) clutter.forget();
+    size_ = {};
     half_turn_.forget();
     t_full_ = kNever;
     for (View& view : views_) view.t = kNever;
@@ -318,6 +354,9 @@ class MultiPoint final : public TrackerBase {
   PoseSolver solver_;
   std::array<PairFollower, 2> followers_;
   HalfTurn half_turn_;
+  std::array<Clutter, 2> clutter_;
+  LedSize size_;  ///< of the first remote
+  std::array<Assignment, 2> assigned_{};  ///< of this report's blobs, where they were followed
   std::array<View, 2> views_;
   Upright upright_;
   SolvedPose found_;

@@ -24,6 +24,7 @@ class Scaat final : public TrackerBase {
       : TrackerBase(settings),
         solver_(settings),
         follower_(settings.leds, pinhole(), settings.thresholds),
+        clutter_(settings.thresholds),
         half_turn_(settings.thresholds),
         filter_(settings.thresholds),
         pixel_variance_(settings.pixel_sigma * settings.pixel_sigma) {}
@@ -35,6 +36,7 @@ class Scaat final : public TrackerBase {
     if (remote != 0) return;
     reading_ = reading;
     pair_ = {};
+    assigned_.fill(-1);
     const Matrix3d& C_LR = gravity(0).C_LR();
     if (running_ && t - t_seen_ > settings().thresholds.forget_after) running_ = false;
     int seen = 0;
@@ -45,10 +47,10 @@ class Scaat final : public TrackerBase {
       if (predictable) seen = correct_with(reading, C_LR, dt);
       view_ = view_of(seen);
       unassigned_ = seen < 2 && reading.blob_count >= 2 ? unassigned_ + 1 : 0;
-      lost_ = !predictable || unassigned_ >= settings().thresholds.unassigned_reports_filter;
+      lost_ = !predictable || found_from_two_ || unassigned_ >= settings().thresholds.unassigned_reports_filter;
       if (settings().leds.count == 2 && seen == 2) reconsider(C_LR);
     }
-    if ((!running_ || lost_) && acquire(t, reading, C_LR)) seen = settings().leds.count;
+    if (!running_ || lost_) seen = std::max(seen, acquire(t, reading, C_LR));
     if (!running_) return;
     if (seen > 0) t_seen_ = t;
     if (settings().leds.count == 2) settle_which_way(t, C_LR);
@@ -85,6 +87,7 @@ class Scaat final : public TrackerBase {
       ++seen;
       last = blobs[led];
       learn_repetition(blob, last_blob_[led]);
+      assigned_[led] = blobs[led];
       if (led < 2) pair_.blob[led] = blobs[led];
     }
     if (seen == 1) correct_size(reading.blobs[static_cast<std::size_t>(last)]);
@@ -93,16 +96,16 @@ class Scaat final : public TrackerBase {
     return seen;
   }
 
-  /// Clutter that stands where it stood is no LED, however wide the gate has become. (The pair follower knows of two
-  /// LEDs: a third would be clutter to it.)
+  /// Clutter that stands where it stood is no LED, however wide the gate has become.
   [[nodiscard]] Assignment without_clutter(const Reading& reading,
                                            const std::array<Eigen::Vector2d, kLedsMax>& expected,
                                            Assignment blobs) const {
-    if (settings().leds.count > 2) return blobs;
-    for (std::size_t led = 0; led < 2; ++led) {
+    const auto leds = static_cast<std::size_t>(settings().leds.count);
+    for (std::size_t led = 0; led < leds; ++led) {
       if (blobs[led] < 0) continue;
       const Blob& blob = reading.blobs[static_cast<std::size_t>(blobs[led])];
-      if (follower_.is_clutter(blob, (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm())) blobs[led] = -1;
+      const double off = (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm();
+      if (leds == 2 ? follower_.is_clutter(blob, off) : clutter_.distance_square(blob) < off) blobs[led] = -1;
     }
     return blobs;
   }
@@ -206,20 +209,30 @@ class Scaat final : public TrackerBase {
     unassigned_ = 0;
   }
 
-  bool acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
+  /// Returns how many LEDs the head was found from; 0: not found.
+  int acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
     if (settings().leds.count == 2) {
       pair_ = follower_.match(t, reading, C_LR);
       if (pair_.found()) start_from(pair_.pose, C_LR);
-      return pair_.found();
+      return pair_.found() ? 2 : 0;
     }
     Upright upright;
     upright.C_LR = C_LR;
     upright.sigma_x = settings().thresholds.prior_width * settings().yaw_sigma;
     upright.sigma_y = settings().thresholds.prior_width * settings().pitch_sigma;
     upright.sigma_roll = settings().thresholds.roll_sigma;
-    const Acquired acquired = acquire_head(reading, settings(), pinhole(), solver_, upright);
-    if (acquired.solved.found) start(acquired.solved.X_RH, acquired.solved.covariance);
-    return acquired.solved.found;
+    const Reading seen = clutter_.removed_from(reading);
+    Acquired acquired = acquire_head(seen, settings(), pinhole(), solver_, upright, size_);
+    if (!acquired.solved.found) acquired = acquire_head_from_two(seen, settings(), pinhole(), solver_, upright, size_);
+    if (found_from_two_ && !acquired.solved.found) running_ = false;
+    found_from_two_ = false;
+    if (!acquired.solved.found) return 0;
+    start(acquired.solved.X_RH, acquired.solved.covariance);
+    const auto found_from = static_cast<int>(
+        std::count_if(acquired.blob.begin(), acquired.blob.end(), [](int blob) { return blob >= 0; }));
+    view_ = view_of(found_from);
+    found_from_two_ = found_from == 2;
+    return found_from;
   }
 
   // ---- what is reported
@@ -248,8 +261,18 @@ class Scaat final : public TrackerBase {
     return two_led_covariance(constant, pinhole(), X_LH.position, roll.x(), roll.y());
   }
 
-  /// Tells the pair follower where the pair was and what else was in the image: clutter, should the head be lost.
+  /// Remembers where the LEDs were and what else was in the image: clutter, should the head be lost.
   void admitted(double t, bool valid) override {
+    const auto leds = static_cast<std::size_t>(settings().leds.count);
+    if (leds > 2) {
+      const auto all = std::span(assigned_).first(leds);
+      if (valid && std::find(all.begin(), all.end(), -1) == all.end()) {
+        clutter_.learn(reading_, all);
+        wii::learn_size(size_, reading_, settings(), assigned_, filter_.X_RH());
+      } else
+        clutter_.follow(reading_);
+      return;
+    }
     if (!valid || pair_.blob[0] < 0 || pair_.blob[1] < 0) return;
     pair_.pose.p_L = filter_.X_RH().position;  // only how far it is counts
     follower_.follow(t, reading_, pair_);
@@ -259,16 +282,23 @@ class Scaat final : public TrackerBase {
   void restart() override {
     running_ = false;
     follower_.forget();
+    clutter_.forget();
+    found_from_two_ = false;
+    size_ = {};
     half_turn_.forget();
   }
 
   PoseSolver solver_;
-  PairFollower follower_;  ///< acquires the pair and knows the clutter; the filter itself follows the LEDs
+  PairFollower follower_;  ///< acquires a pair and knows its clutter; the filter itself follows the LEDs
+  Clutter clutter_;        ///< of three LEDs or more
+  LedSize size_;           ///< likewise
+  bool found_from_two_ = false;  ///< of three LEDs, whose yaw a pair must not seem to show: found anew in every report
   HalfTurn half_turn_;
   double doubt_ = 0;  ///< that the pair is the other way round
   HeadFilter filter_;
   Reading reading_;
   PairFollower::Match pair_;  ///< this report's blobs of the first two LEDs
+  Assignment assigned_{};     ///< this report's blobs of all LEDs that were followed
   double pixel_variance_;
   bool running_ = false;
   double t_seen_ = 0;

@@ -36,6 +36,7 @@ struct Thresholds {
   double pair_cost_max = 6;      ///< a tilt of 90 degrees costs 4, sizes that differ by two cost 4: both are no head
   double cost_margin = 2;        ///< tilt and rounded sizes of a true pair cost less
   double cost_per_led_max = 12;  ///< per LED seen: beyond any pixel noise, so not this head
+  double acquisition_cost_per_led = 5;  ///< per LED of a head that is found: its shape, and how upright it is
   double gate_sigmas = 5;        ///< of what a measurement was expected to be
   double pixel_gate = 15;        ///< pixel, beside what the state's uncertainty allows
   double gate = 60;              ///< pixel, of trackers without a filter: a head's motion between two reports
@@ -52,6 +53,7 @@ struct Thresholds {
   double size_cost_max = 2;          ///< sizes of real sensors follow distance badly: a hint, no proof; not measured
   double repetition_learning = 0.02;  ///< per coordinate pair
   double size_sigma = 0.5;           ///< blob size units: a size is a whole number
+  double size_spread = 1.5;  ///< likewise, of all LEDs of a head: they shine to where it looks
   double size_repeats = 50;          ///< reports that show the same rounding error of a size
   double led_scale = 10;          ///< pixel: how near further LEDs are to where the pair alone puts them; not measured
   double missing_led_cost = 100;  ///< of a further LED that is nowhere near its place; not measured
