@@ -95,7 +95,8 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
   const auto cost = [&](int b, std::size_t led) {
     const Blob& blob = reading.blobs[static_cast<std::size_t>(b)];
     const double moved = distance_square(blob, last_[led]);
-    return moved > gate_square || is_clutter(blob, moved) ? std::numeric_limits<double>::infinity() : moved;
+    const bool another = std::abs(blob.size - last_[led].size) > thresholds_.size_spread;
+    return moved > gate_square || another || is_clutter(blob, moved) ? std::numeric_limits<double>::infinity() : moved;
   };
   std::array<int, 2> best = {-1, -1};
   double best_cost = std::numeric_limits<double>::infinity();

@@ -98,10 +98,10 @@ class MultiPoint final : public TrackerBase {
     if (remotes_ == 2) return acquire_pairs(t);
     seen_fully_ = true;
     const Reading reading = clutter_[0].removed_from(views_[0].reading);
-    const Acquired all = acquire_head(reading, settings(), pinhole(), solver_, upright_, size_);
+    const Acquired all = acquire_head(reading, settings(), pinhole(), solver_, upright_, size_[0]);
     if (all.solved.found) return all.solved;
     seen_fully_ = false;
-    return acquire_head_from_two(reading, settings(), pinhole(), solver_, upright_, size_).solved;
+    return acquire_head_from_two(reading, settings(), pinhole(), solver_, upright_, size_[0]).solved;
   }
 
   /// LEDs are missing and blobs unassigned: a blob that is followed may be clutter.
@@ -294,11 +294,16 @@ class MultiPoint final : public TrackerBase {
     return {X_RH_.position + (t - t_followed_) * velocity_R_, X_RH_.rotation};
   }
 
+  [[nodiscard]] Pose in_remote(const Pose& X_R1H, int remote) const {
+    return remote == 0 ? X_R1H : X_R1R2_.inverse() * X_R1H;
+  }
+
   /// A light of another size than the LEDs': a lamp that came where an LED was expected.
   [[nodiscard]] bool is_no_led(const Blob& b, int remote, double t, std::size_t led) const {
-    if (remote != 0 || !(size_.at_1m > 0)) return false;
-    const double distance = (predicted(t) * settings().leds.p_H[led]).norm();
-    return std::abs(b.size - std::clamp(size_.at_1m / distance, 1.0, 15.0)) > settings().thresholds.size_spread;
+    const double at_1m = size_[static_cast<std::size_t>(remote)].at_1m;
+    if (!(at_1m > 0)) return false;
+    const double distance = (in_remote(predicted(t), remote) * settings().leds.p_H[led]).norm();
+    return std::abs(b.size - std::clamp(at_1m / distance, 1.0, 15.0)) > settings().thresholds.size_spread;
   }
 
   /// Where the whole head is seen, all else is clutter.
@@ -308,7 +313,8 @@ class MultiPoint final : public TrackerBase {
       const auto all = std::span(assigned_[i]).first(leds);
       if (valid && std::find(all.begin(), all.end(), -1) == all.end()) {
         clutter_[i].learn(views_[i].reading, all);
-        if (i == 0) learn_size(size_, views_[i].reading, settings(), assigned_[i], found_.X_RH);
+        learn_size(size_[i], views_[i].reading, settings(), assigned_[i],
+                   in_remote(found_.X_RH, static_cast<int>(i)));
       } else
         clutter_[i].follow(views_[i].reading);
       assigned_[i].fill(-1);
@@ -342,7 +348,7 @@ class MultiPoint final : public TrackerBase {
   void restart() override {
     followed_ = false;
     for (Clutter& clutter : clutter_) clutter.forget();
-    size_ = {};
+    size_.fill({});
     half_turn_.forget();
     t_full_ = kNever;
     for (View& view : views_) view.t = kNever;
@@ -355,7 +361,7 @@ class MultiPoint final : public TrackerBase {
   std::array<PairFollower, 2> followers_;
   HalfTurn half_turn_;
   std::array<Clutter, 2> clutter_;
-  LedSize size_;  ///< of the first remote
+  std::array<LedSize, 2> size_;
   std::array<Assignment, 2> assigned_{};  ///< of this report's blobs, where they were followed
   std::array<View, 2> views_;
   Upright upright_;

@@ -48,7 +48,7 @@ struct Thresholds {
   double pair_memory = 0.25;  ///< s that a pair is followed for; a head needs longer to roll over
   double lost_head_memory = 0.25;    ///< s that a lost head is looked for where it was
   double upright_cosine_min = -0.2;  ///< of the roll of three LEDs: no head is tilted by more than 101 degrees
-  double size_scale = 1;             ///< blob size units: a true pair differs by no more
+  double size_scale = 0.7;            ///< blob size units: a true pair differs by no more
   double size_learning = 0.02;       ///< per report: cells run down slowly, and brightness with them
   double size_cost_max = 2;          ///< sizes of real sensors follow distance badly: a hint, no proof; not measured
   double repetition_learning = 0.02;  ///< per coordinate pair
