@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFits = 9;        // of a cost: three standard deviations
 constexpr double kLikely = 0.1;    // a head that would be another one
+constexpr double kSamePlace = 0.1;  // m
 constexpr double kSameTurn = 0.3;  // rad, likewise of how far a head turns in a report or two
 
 class MultiPoint final : public TrackerBase {
@@ -179,7 +180,8 @@ class MultiPoint final : public TrackerBase {
       apart << other.X_RH.position - best.X_RH.position,
           vector_from_rotation((other.X_RH.rotation * best.X_RH.rotation.conjugate()).normalized());
       const double likely = 1 / (1 + pinned::exp((other.cost - best.cost) / 2));
-      if (likely > kLikely && apart.tail<3>().norm() > kSameTurn) return {};
+      const bool another = apart.tail<3>().norm() > kSameTurn || apart.head<3>().norm() > kSamePlace;
+      if (likely > kLikely && another) return {};
       head.covariance += likely * apart * apart.transpose();
     }
     return head;

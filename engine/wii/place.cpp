@@ -96,6 +96,7 @@ Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double 
   TrackerSettings known = options.tracker;
   known.yaw_sigma = known.pitch_sigma = 0;
   const Pose X_RW = place.X_WR.inverse();
+  const Matrix3d C_LR = levelling(X_RW.rotation * Vector3d::UnitY());
   const double emission = pinned::cos(options.emission_half_angle);
   int covered = 0;
   double square = 0;
@@ -111,8 +112,9 @@ Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double 
     };
     if (!in_view(0) || !in_view(1)) continue;
     ++covered;
-    Matrix6d covariance = two_led_covariance(known, pinhole, X_RW * X_WH.position, 1, 0);
-    add_tilt(covariance, X_RW * X_WH.position, Matrix3d::Identity(), known.gravity_sigma * known.gravity_sigma);
+    const Vector3d p_L = C_LR * (X_RW * X_WH.position);
+    Matrix6d covariance = two_led_covariance(known, pinhole, p_L, 1, 0);
+    add_tilt(covariance, p_L, C_LR, known.gravity_sigma * known.gravity_sigma);
     square += covariance.diagonal().head<3>().sum();
   }
   place.covered = static_cast<double>(covered) / static_cast<double>(options.heads.size());

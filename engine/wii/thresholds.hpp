@@ -1,8 +1,8 @@
 // What trackers take for near, likely, still or lost: the numbers of theirs that no formula gives.
 //
 // Heuristic: chosen on the trajectories and sensors of validate.hpp. How little their errors hang on each number is in
-// wii_thresholds_test; those that say "not measured" are asked for by none of these trajectories and sensors, at a
-// thousandth or a thousand times their value. Numbers that are limits of the task stand where they are used
+// wii_thresholds_test, and half_turn_test for those of a pair that may be the other way round; those that say "not
+// measured" are asked for by none of these trajectories and sensors, at a thousandth or a thousand times their value. Numbers that are limits of the task stand where they are used
 // (admission.hpp: how far and how fast heads are), those of the sensor in channels.hpp, those of the search for the
 // remote's place in place.hpp.
 #pragma once
@@ -43,11 +43,10 @@ struct Thresholds {
   double gate_growth = 1500;     ///< pixel per s without a report: 1.1 m/s at 1 m
   double pixel_gate_max = 200;   ///< pixel, of a filter, however unsure it is: a fifth of the image
   double spread_gate = 3;     ///< standard deviations of the state that the filter's gate is widened by; not measured
-  double pair_gate = 20;      ///< pixel, of a pair that is followed, beside half its spacing and its speed
+  double pair_gate = 20;      ///< pixel, of a pair that is followed, beside half its spacing and its speed; not measured
   double pair_speed = 2000;   ///< pixel per s: 1.5 m/s at 1 m, for gaps of some reports
   double pair_memory = 0.25;  ///< s that a pair is followed for; a head needs longer to roll over
   double lost_head_memory = 0.25;    ///< s that a lost head is looked for where it was
-  double upright_cosine_min = -0.2;  ///< of the roll of three LEDs: no head is tilted by more than 101 degrees
   double size_scale = 0.7;            ///< blob size units: a true pair differs by no more
   double size_learning = 0.02;       ///< per report: cells run down slowly, and brightness with them
   double size_cost_max = 2;          ///< sizes of real sensors follow distance badly: a hint, no proof; not measured

@@ -1,6 +1,7 @@
 // The numbers, and upstream's beside them (in brackets there), from the validation's own runs.
 #include <gtest/gtest.h>
 
+#include "tests/length.hpp"
 #include "tests/wii/validation_runs.hpp"
 
 namespace verisim::wii::numbers_test {
@@ -77,6 +78,61 @@ TEST(Numbers, NearlyEverySampleWithBothLedsInViewIsValid) {
     for (const char* tracker : {"geometric", "scaat", "three-led", "stereo"}) {
       SCOPED_TRACE(path.name + ", " + tracker);
       EXPECT_GE(row_of(tracker, path.name).availability, 0.995);
+    }
+}
+
+/// The mean over seeds of one tracker on one trajectory.
+ValidationRow mean_row(const char* tracker, const char* trajectory, const char* sensor, ValidationOptions options) {
+  options.trackers = {tracker};
+  options.trajectories = {trajectory};
+  options.sensors = {sensor};
+  options.measure_time = false;
+  return validate(options).front();
+}
+
+// An accelerometer as a real one is, 0.01 g rms: averaged while the remote rests. (An exact one: 0.35, 0.62, 0.30.)
+TEST(Numbers, AnAccelerometersNoiseIsAveraged) {
+  ValidationOptions options;
+  options.seeds = test::by_length(3, 20, 200);
+  EXPECT_LE(mean_row("scaat", "natural", "accelerometer", options).position.rms, 0.0040);
+  EXPECT_LE(mean_row("scaat", "far", "accelerometer", options).position.rms, 0.0080);
+  EXPECT_LE(mean_row("scaat", "tilted", "accelerometer", options).position.rms, 0.0025);
+  EXPECT_LE(mean_row("geometric", "tilted", "accelerometer", options).position.rms, 0.0033);
+  options.set_up.accelerometer_noise = 0.01;
+  EXPECT_LE(mean_row("geometric", "tilted", "8-bit", options).position.rms, 0.0041);
+}
+
+// Over start poses that turn the head as far as trackers assume, errors are what the covariance says: 0.3 to 1.3 of it
+// per degree of freedom of the orientation. `ideal` has less noise than trackers assume, so its errors may be smaller;
+// the position's may be a tenth of it, where half a pixel and a rounded one are the same.
+TEST(Numbers, OrientationsAreAsFarOffAsTheySay) {
+  ValidationOptions options;
+  options.seeds = 20;
+  options.start_poses = true;
+  const std::size_t step = test::by_length(14, 1, 1);
+  for (const char* sensor : test::by_length<std::vector<const char*>>({"wiimote"}, {"wiimote"},
+                                                                      {"wiimote", "accelerometer", "ideal"}))
+    for (std::size_t i = 0; i < trajectories().size(); i += step)
+      for (const char* tracker : {"geometric", "three-led", "scaat", "stereo", "scaat/3"}) {
+        const std::string& path = trajectories()[i].name;
+        const ValidationRow row = mean_row(tracker, path.c_str(), sensor, options);
+        SCOPED_TRACE(fmt::format("{}, {}, {}: {:.2f}", sensor, path, tracker, row.orientation_nees));
+        EXPECT_LE(row.orientation_nees, 1.3);
+        EXPECT_GE(row.orientation_nees, std::string_view(sensor) == "ideal" ? 0.15 : 0.3);
+      }
+}
+
+// The lamp comes on while the head is half out of the image, or in the very moment in which an LED goes dark.
+TEST(Numbers, ALampThatComesWhileLedsGoMisleadsNobody) {
+  ValidationOptions options;
+  options.seeds = test::by_length(1, 10, 100);
+  for (const char* path : {"edges", "dropout-one", "dropout-both", "grid", "natural-yaw"})
+    for (const char* tracker : {"three-led", "scaat/3", "stereo", "geometric", "scaat"}) {
+      const ValidationRow row = mean_row(tracker, path, "lamp", options);
+      SCOPED_TRACE(fmt::format("{}, {}: {:.2f} cm, at most {:.2f}", path, tracker, 100 * row.position.rms,
+                               100 * row.position.max));
+      EXPECT_LE(row.position.rms, 0.03);
+      EXPECT_GE(row.availability, 0.99);
     }
 }
 

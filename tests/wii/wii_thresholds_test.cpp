@@ -33,18 +33,19 @@ ValidationRow row(const Number& n, double factor) {
   return validate_one(n.tracker, trajectory(n.trajectory), sensor_case(n.sensor), options);
 }
 
-// What a tracker does with a head of three LEDs of which one is dark hangs on its numbers: by up to a half. All else
-// does by less than a twentieth, most of it not at all.
+// What a tracker does with a head of three LEDs of which one is dark hangs on its numbers, by up to 62 %; so does how two
+// remotes predict where a blob will be, by 30 %, beside errors of 2 mm. All else does by a tenth at most, most of it not
+// at all.
 class WiiThresholds : public ::testing::TestWithParam<Number> {};
 INSTANTIATE_TEST_SUITE_P(
     HalfAndDouble, WiiThresholds,
     ::testing::Values(
-        Number{"linear_density", &Thresholds::linear_density, "scaat/3", "natural-yaw", "wiimote", 1.05},
+        Number{"linear_density", &Thresholds::linear_density, "scaat/3", "natural-yaw", "wiimote", 1.06},
         Number{"angular_density", &Thresholds::angular_density, "scaat/3", "natural-yaw", "wiimote", 1.05},
-        Number{"guessed_density", &Thresholds::guessed_density, "scaat/3", "dropout-one", "wiimote", 1.2},
+        Number{"guessed_density", &Thresholds::guessed_density, "scaat/3", "dropout-one", "wiimote", 1.21},
         Number{"unseen_density", &Thresholds::unseen_density, "scaat", "dropout-both", "wiimote", 1.05},
         Number{"decay", &Thresholds::decay, "scaat", "dropout-one", "wiimote", 1.05},
-        Number{"pair_decay", &Thresholds::pair_decay, "scaat/3", "dropout-one", "wiimote", 1.55},
+        Number{"pair_decay", &Thresholds::pair_decay, "scaat/3", "dropout-one", "wiimote", 1.62},
         Number{"slow", &Thresholds::slow, "scaat/3", "dropout-one", "wiimote", 1.05},
         Number{"clutter_radius", &Thresholds::clutter_radius, "geometric", "dropout-one", "lamp", 1.05},
         Number{"pair_cost_max", &Thresholds::pair_cost_max, "geometric", "natural", "lamp", 1.05},
@@ -58,20 +59,28 @@ INSTANTIATE_TEST_SUITE_P(
         Number{"upright_time", &Thresholds::upright_time, "scaat/3", "natural-yaw", "wiimote", 1.05},
         Number{"prior_width", &Thresholds::prior_width, "three-led", "natural-yaw", "wiimote", 1.05},
         Number{"roll_sigma", &Thresholds::roll_sigma, "three-led", "tilted", "wiimote", 1.05},
-        Number{"turn_rate", &Thresholds::turn_rate, "three-led", "dropout-one", "wiimote", 1.5},
-        Number{"still_known", &Thresholds::still_known, "three-led", "dropout-one", "wiimote", 1.15},
+        Number{"turn_rate", &Thresholds::turn_rate, "three-led", "dropout-one", "wiimote", 1.52},
+        Number{"still_known", &Thresholds::still_known, "three-led", "dropout-one", "wiimote", 1.16},
         Number{"start_speed", &Thresholds::start_speed, "scaat", "dropout-both", "lamp", 1.01},
         Number{"start_spin", &Thresholds::start_spin, "scaat/3", "static", "lamp", 1.01},
-        Number{"velocity_gain", &Thresholds::velocity_gain, "stereo", "swap", "wiimote", 1.12},
+        Number{"velocity_gain", &Thresholds::velocity_gain, "stereo", "swap", "wiimote", 1.3},
         Number{"pair_speed", &Thresholds::pair_speed, "scaat", "dropout-one", "lamp", 1.2},
         Number{"lost_head_memory", &Thresholds::lost_head_memory, "stereo", "dropout-one", "wiimote", 1.01},
         Number{"size_learning", &Thresholds::size_learning, "scaat", "dropout-one", "wiimote", 1.02},
-        Number{"size_sigma", &Thresholds::size_sigma, "scaat", "dropout-one", "wiimote", 1.4},
+        Number{"size_sigma", &Thresholds::size_sigma, "scaat", "dropout-one", "wiimote", 1.43},
         Number{"size_repeats", &Thresholds::size_repeats, "scaat", "dropout-one", "wiimote", 1.15},
         Number{"confirmations", &Thresholds::confirmations, "scaat", "dropout-one", "lamp", 1.07},
-        Number{"unassigned_reports", &Thresholds::unassigned_reports, "stereo", "natural-yaw", "lamp", 1.06},
-        Number{"other_remote_max", &Thresholds::other_remote_max, "stereo", "natural", "wiimote", 1.03},
+        Number{"unassigned_reports", &Thresholds::unassigned_reports, "stereo", "natural-yaw", "lamp", 1.1},
+        Number{"other_remote_max", &Thresholds::other_remote_max, "stereo", "natural", "wiimote", 1.07},
         Number{"both_silent", &Thresholds::both_silent, "stereo", "natural", "wiimote", 1.01},
+        Number{"scatter", &Thresholds::scatter, "stereo", "static", "accelerometer", 1.05},
+        Number{"scatter_min", &Thresholds::scatter_min, "stereo", "moving-remote", "lamp", 1.05},
+        Number{"scatter_time", &Thresholds::scatter_time, "stereo", "moving-remote", "lamp", 1.05},
+        Number{"resting_for", &Thresholds::resting_for, "stereo", "edges", "accelerometer", 1.06},
+        Number{"moving_for", &Thresholds::moving_for, "stereo", "moving-remote", "accelerometer", 1.05},
+        Number{"lone_blob_memory", &Thresholds::lone_blob_memory, "stereo", "natural-yaw", "wiimote", 1.05},
+        Number{"slack_sigmas", &Thresholds::slack_sigmas, "scaat/3", "grid", "wiimote", 1.05},
+        Number{"pixel_gate_max", &Thresholds::pixel_gate_max, "scaat", "edges", "lamp", 1.1},
         Number{"pinned", &Thresholds::pinned, "scaat", "swap", "wiimote", 1.01}),
     [](const auto& number) { return std::string(number.param.name); });
 
@@ -98,18 +107,15 @@ INSTANTIATE_TEST_SUITE_P(
     HalfAndDouble, WiiGuards,
     ::testing::Values(
         Guard{{"spin_max", &Thresholds::spin_max, "scaat/3", "dropout-one", "lamp", 1}, 0.001},
-        Guard{{"pair_gate", &Thresholds::pair_gate, "geometric", "dropout-one", "lamp", 1}, 10},
         Guard{{"pair_memory", &Thresholds::pair_memory, "geometric", "natural-yaw", "wiimote", 1}, 0.001},
-        Guard{{"upright_cosine_min", &Thresholds::upright_cosine_min, "geometric", "natural-yaw", "wiimote", 1}, -4.95},
         Guard{{"unassigned_reports_filter", &Thresholds::unassigned_reports_filter, "scaat", "dropout-one", "lamp", 1},
               0.001},
-        Guard{{"start_turn", &Thresholds::start_turn, "three-led", "dropout-one", "lamp", 1}, 4},
+        Guard{{"start_turn", &Thresholds::start_turn, "three-led", "edges", "lamp", 1}, 100},
         Guard{{"solver_step_max", &Thresholds::solver_step_max, "three-led", "dropout-one", "lamp", 1}, 0.001},
         Guard{{"forward_min", &Thresholds::forward_min, "geometric", "dropout-one", "lamp", 1}, 10},
         Guard{{"shaken", &Thresholds::shaken, "geometric", "dropout-one", "wiimote", 1}, 0.001},
         Guard{{"gravity_gap", &Thresholds::gravity_gap, "geometric", "moving-remote", "lamp", 1}, 0.001},
         Guard{{"direction_min", &Thresholds::direction_min, "geometric", "moving-remote", "lamp", 1}, 10},
-        Guard{{"slack_sigmas", &Thresholds::slack_sigmas, "geometric", "dropout-one", "lamp", 1}, 10},
         Guard{{"forget_after", &Thresholds::forget_after, "scaat", "dropout-both", "lamp", 1}, 0.001}),
     [](const auto& number) { return std::string(number.param.name); });
 
@@ -125,18 +131,24 @@ TEST_P(WiiGuards, ChangeNothingUntilTheyKeepOutWhatHeadsDo) {
   EXPECT_FALSE(as_usual && reached.valid == usual.valid) << "nothing asks for this number here";
 }
 
-// Two numbers have one good side only. A lamp that burns while all LEDs are dark is taken for a head of three LEDs once
-// the filter's gate is wide enough to reach it, and for one of a pair once sizes count for four times as much.
-TEST(WiiThresholdsWithALamp, HaveASideOnWhichTheyFail) {
-  const auto worse = [](const Number& n, double factor) {
-    return row(n, factor).position.rms / row(n, 1).position.rms;
-  };
-  const Number gate{"pixel_gate_max", &Thresholds::pixel_gate_max, "scaat/3", "dropout-both", "lamp", 1};
-  EXPECT_LE(worse(gate, 0.5), 1.05);
-  EXPECT_GT(worse(gate, 2), 10);
-  const Number size{"size_scale", &Thresholds::size_scale, "stereo", "dropout-one", "lamp", 1};
-  EXPECT_GT(worse(size, 0.5), 10);
-  EXPECT_LE(worse(size, 2), 1.05);
+/// What is told apart by a size or a cost has one good side only.
+struct OneSided : Number {
+  double good, bad;  ///< factors; `worse_max` is of the good one
+};
+class WiiOneSided : public ::testing::TestWithParam<OneSided> {};
+INSTANTIATE_TEST_SUITE_P(
+    HalfOrDouble, WiiOneSided,
+    ::testing::Values(
+        OneSided{{"acquisition_cost_per_led", &Thresholds::acquisition_cost_per_led, "three-led", "edges", "lamp", 1.05},
+                 0.5, 2},
+        OneSided{{"size_spread", &Thresholds::size_spread, "geometric", "dropout-one", "lamp", 1.05}, 0.7, 2},
+        OneSided{{"size_scale", &Thresholds::size_scale, "geometric", "edges", "lamp", 1.05}, 0.9, 2}),
+    [](const auto& number) { return std::string(number.param.name); });
+
+TEST_P(WiiOneSided, TakeALampForAnLedBeyondIt) {
+  const double usual = row(GetParam(), 1).position.rms;
+  EXPECT_LE(row(GetParam(), GetParam().good).position.rms, GetParam().worse_max * usual);
+  EXPECT_GT(row(GetParam(), GetParam().bad).position.rms, 10 * usual);
 }
 
 // coast_max: what is valid for 0.1 s without any LED is, doubled, valid for 0.1 s more of each half second.
