@@ -68,7 +68,7 @@ class Validate(ProgramTest):
         table = self.succeed("wii", "validate", "--sensor", "ideal", "--markdown").stdout
         with open(os.path.join(SOURCE, "README.md")) as readme:
             self.assertIn(table, readme.read(), "verisim wii validate --sensor ideal --markdown")
-        self.assertEqual(len(table.splitlines()), 2 + 13)
+        self.assertEqual(len(table.splitlines()), 2 + 14)
 
     def test_the_readmes_picture_is_what_is_drawn(self):
         self.succeed("wii", "validate", "-o", self.path("validation.csv"))
@@ -76,7 +76,7 @@ class Validate(ProgramTest):
             self.assertEqual(here.read(), shipped.read(), "verisim wii validate -o engine/wii/validation.csv")
         with open(self.path("validation.csv")) as f:
             rows = list(csv.DictReader(f))
-        self.assertEqual(len(rows), 13 * 6 * 2)
+        self.assertEqual(len(rows), 14 * 6 * 2)
         for row in rows:
             self.assertLessEqual(float(row["nees_lower"]), float(row["nees_upper"]))
 
