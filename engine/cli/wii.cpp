@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +22,9 @@ struct PlaceCommand {
   std::string trace;
   std::vector<double> head = {0, 0, 1};
   std::vector<double> screen = {0, 0, 0};
+  std::vector<double> screen_size = {0.6, 0.35};
+  std::vector<std::vector<double>> obstacles;  ///< corners of boxes
+  std::vector<double> at;                      ///< a place to evaluate: x y z, heading, pitch
   std::vector<double> spread = {0.15, 0.05, 0.15};
   std::vector<double> room_min = {-0.5, -0.3, -0.2};
   std::vector<double> room_max = {0.5, 0.5, 0.2};
@@ -28,11 +33,18 @@ struct PlaceCommand {
   int count = 1000;
   std::uint64_t samples = 200'000;
   std::uint64_t seed = 1;
+  bool screen_given = false;
   bool json = false;
 };
 
 Vector3d vector_of(const std::vector<double>& v) {
   return {v[0], v[1], v[2]};
+}
+
+Vector3d middle_of(const std::vector<Pose>& heads) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Pose& X_WH : heads) sum += X_WH.position;
+  return heads.empty() ? sum : Vector3d(sum / static_cast<double>(heads.size()));
 }
 
 wii::PlaceOptions place_options(const PlaceCommand& c) {
@@ -48,6 +60,18 @@ wii::PlaceOptions place_options(const PlaceCommand& c) {
     options.heads = wii::modelled_heads(vector_of(c.head), vector_of(c.screen), vector_of(c.spread), c.count, c.seed);
   }
   if (!c.fov.empty()) options.tracker.fov = {c.fov[0] * wii::kDegree, c.fov[1] * wii::kDegree};
+  for (const double side : c.screen_size)
+    if (!(side >= 0) || !std::isfinite(side))
+      fail(ErrorKind::usage, "--screen-size {} {}: must be sides in m; 0 0 for no screen", c.screen_size[0], c.screen_size[1]);
+  if (c.screen_size[0] > 0 && c.screen_size[1] > 0 && (c.trace.empty() || c.screen_given))
+    options.obstacles.push_back(
+        wii::screen_at(vector_of(c.screen), middle_of(options.heads), c.screen_size[0], c.screen_size[1]));
+  for (const std::vector<double>& box : c.obstacles) {
+    const Vector3d low(box[0], box[1], box[2]), high(box[3], box[4], box[5]);
+    if (!low.allFinite() || !high.allFinite() || !(low.array() <= high.array()).all())
+      fail(ErrorKind::usage, "--obstacle {}: the first corner must be the lower one", fmt::join(box, " "));
+    options.obstacles.push_back({{(low + high) / 2, Quaterniond::Identity()}, (high - low) / 2});
+  }
   options.room_min = vector_of(c.room_min);
   options.room_max = vector_of(c.room_max);
   return options;
@@ -73,26 +97,65 @@ ordered_json coverage_of(const PlaceCommand& c, const wii::TrackerSettings& trac
           {"volume_standard_error_m3", volume.standard_error}};
 }
 
+ordered_json place_json(const wii::Placement& place) {
+  const Vector3d& p = place.X_WR.position;
+  return {{"position_m", {p.x(), p.y(), p.z()}},
+          {"heading_deg", place.heading / wii::kDegree},
+          {"pitch_deg", place.pitch / wii::kDegree},
+          {"covered", place.covered},
+          {"expected_error_m", place.covered > 0 ? ordered_json(place.error) : ordered_json()}};
+}
+
+/// Heads by why they are not seen from a place: numbers from 0, as in the trace or as modelled.
+std::map<std::string_view, std::vector<std::size_t>> lost_from(const wii::PlaceOptions& options,
+                                                               const wii::Placement& place) {
+  std::map<std::string_view, std::vector<std::size_t>> heads;
+  const std::vector<wii::Lost> lost = wii::lost_heads(options, place.X_WR);
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    if (lost[i] != wii::Lost::no) heads[wii::name_of(lost[i])].push_back(i);
+  return heads;
+}
+
+void print_places(const wii::PlaceOptions& options, const std::vector<wii::Placement>& places) {
+  std::printf("%8s %8s %8s %8s %8s %9s %9s\n", "x m", "y m", "z m", "heading", "pitch", "seen %", "error cm");
+  for (const wii::Placement& place : places) {
+    const Vector3d& p = place.X_WR.position;
+    std::printf("%8.3f %8.3f %8.3f %8.1f %8.1f %9.1f %9.2f\n", p.x(), p.y(), p.z(), place.heading / wii::kDegree,
+                place.pitch / wii::kDegree, 100 * place.covered, 100 * place.error);
+  }
+  constexpr std::size_t kShown = 8;
+  for (const auto& [why, heads] : lost_from(options, places.front())) {
+    std::printf("from the first %zu of %zu heads are %.*s:", heads.size(), options.heads.size(),
+                static_cast<int>(why.size()), why.data());
+    for (std::size_t i = 0; i < std::min(kShown, heads.size()); ++i) std::printf(" %zu", heads[i]);
+    std::printf(heads.size() > kShown ? " ...\n" : "\n");
+  }
+}
+
 void run_place(const PlaceCommand& c) {
   const wii::PlaceOptions options = place_options(c);
   const ordered_json coverage = coverage_of(c, options.tracker);
-  const wii::Placement best = wii::best_place(options);
-  const Vector3d& p = best.X_WR.position;
+  std::vector<wii::Placement> places;
+  if (c.at.empty()) {
+    places = wii::good_places(options);
+  } else {
+    if (!std::all_of(c.at.begin(), c.at.end(), [](double x) { return std::isfinite(x); }))
+      fail(ErrorKind::usage, "--at {}: must be finite numbers", fmt::join(c.at, " "));
+    wii::check_place(options);
+    places = {wii::judge_place(options, vector_of(c.at), c.at[3] * wii::kDegree, c.at[4] * wii::kDegree)};
+  }
   if (c.json) {
-    const ordered_json j = {{"position_m", {p.x(), p.y(), p.z()}},
-                            {"heading_deg", best.heading / wii::kDegree},
-                            {"pitch_deg", best.pitch / wii::kDegree},
-                            {"covered", best.covered},
-                            {"expected_error_m", best.error},
-                            {"heads", options.heads.size()},
-                            {"coverage", coverage}};
+    ordered_json j = place_json(places.front());
+    j["heads"] = options.heads.size();
+    j["lost"] = ordered_json::object();
+    for (const auto& [why, heads] : lost_from(options, places.front())) j["lost"][std::string(why)] = heads;
+    j["places"] = ordered_json::array();
+    for (const wii::Placement& place : places) j["places"].push_back(place_json(place));
+    j["coverage"] = coverage;
     std::printf("%s\n", json_text(j).c_str());
     return;
   }
-  std::printf("place      %.3f %.3f %.3f m, heading %.1f, pitch %.1f deg\n", p.x(), p.y(), p.z(),
-              best.heading / wii::kDegree, best.pitch / wii::kDegree);
-  std::printf("sees       %.1f %% of %zu head poses, expected error %.2f cm\n", 100 * best.covered,
-              options.heads.size(), 100 * best.error);
+  print_places(options, places);
   const auto figure = [&](const char* key) { return coverage[key].get<double>(); };
   std::printf("eq. 2.1    %.5f m2 at %.2f m; counted %.5f +- %.5f\n", figure("area_m2"), c.range[1],
               figure("area_counted_m2"), figure("area_standard_error_m2"));
@@ -101,11 +164,15 @@ void run_place(const PlaceCommand& c) {
 }
 
 void add_place(CLI::App& wii_command, int& exit_code) {
-  auto* command = wii_command.add_subcommand("place", "The place and tilt of a remote that see most of given heads");
+  auto* command = wii_command.add_subcommand("place", "Places of a remote that see most of given heads, and see them best");
   auto o = std::make_shared<PlaceCommand>();
   command->add_option("--heads", o->trace, "Wii trace with true poses; else heads are modelled");
   command->add_option("--head", o->head, "Middle of the modelled heads, m (+y up)")->expected(3);
-  command->add_option("--screen", o->screen, "What they face, m")->expected(3);
+  auto* screen = command->add_option("--screen", o->screen, "What they face, m; nothing is seen through it")->expected(3);
+  command->add_option("--screen-size", o->screen_size, "Its width and height, m; 0 0: it hides nothing")->expected(2);
+  command->add_option("--obstacle", o->obstacles, "Lower and upper corner of a box that hides what is behind (repeatable)")
+      ->expected(6);
+  command->add_option("--at", o->at, "Evaluate this place: x y z, m, heading and pitch, degrees")->expected(5);
   command->add_option("--spread", o->spread, "Standard deviation of their places, m")->expected(3);
   command->add_option("--count", o->count, "How many heads to model")->check(CLI::PositiveNumber);
   command->add_option("--room-min", o->room_min, "Lower corner of where the remote may stand, m")->expected(3);
@@ -121,6 +188,7 @@ void add_place(CLI::App& wii_command, int& exit_code) {
   command->footer(
       "Example: verisim wii place --head 0 1.2 1 --screen 0 1.2 0 --room-min -0.6 0.7 -0.3 --room-max 0.6 1.7 0");
   command->callback([=, &exit_code] {
+    o->screen_given = screen->count() > 0;
     run_place(*o);
     exit_code = 0;
   });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "engine/wii/tracker.hpp"
@@ -19,12 +20,21 @@ struct PlaceSearch {
   double equal_coverage = 0.001;      ///< shares of covered heads this near count as equal, and the error decides
 };
 
+/// What a remote cannot stand in nor see through: a screen, a wall, furniture. An axis-aligned box of its own coordinates.
+struct Obstacle {
+  Pose X_WO;                           ///< of its middle
+  Vector3d half = Vector3d::Zero();  ///< of its sides [m]
+};
+/// A flat screen 4 cm thick that faces `toward`. @pre it does not stand right above or below that
+[[nodiscard]] Obstacle screen_at(const Vector3d& middle, const Vector3d& toward, double width, double height);
+
 struct PlaceOptions {
   std::vector<Pose> heads;                 ///< X_WH, recorded or modelled; W with +y up
   Vector3d room_min = {-0.5, -0.5, -0.5};  ///< where the remote may stand, m, W
   Vector3d room_max = {0.5, 0.5, 0.5};
   TrackerSettings tracker;                    ///< LEDs, field of view and pixel noise
   double emission_half_angle = 60 * kDegree;  ///< an LED turned further away is not counted as seen
+  std::vector<Obstacle> obstacles;
   PlaceSearch search = {};
 };
 
@@ -36,14 +46,27 @@ struct Placement {
   double error = 0;    ///< m, expected rms error over the covered heads (yaw left out)
 };
 
-/// What a given place is worth. Cost: two projections per head.
+/// Error(input) for no heads, an empty or endless room, a head that is not finite, or settings that no tracker takes.
+void check_place(const PlaceOptions& options);
+
+/// Why a head is not covered, by the first of its two LEDs that is not.
+enum class Lost { no, out_of_view, too_near, too_far, turned_away, hidden };
+[[nodiscard]] std::string_view name_of(Lost why);
+/// Of every head. @pre as for judge_place
+[[nodiscard]] std::vector<Lost> lost_heads(const PlaceOptions& options, const Pose& X_WR);
+
+/// What a given place is worth; nothing within an obstacle. Cost: two projections per head, a covariance for those
+/// covered.
 /// @pre there are heads; the settings are such that a tracker takes them (check_settings); the place is finite
 [[nodiscard]] Placement judge_place(const PlaceOptions& options, const Vector3d& p_WR, double heading, double pitch);
 
-/// The best place: most heads covered; among equals (to a tenth of a percent) the least expected error. A 5 x 5 x 5
-/// grid of places aimed at the middle of the heads, then the best eight improved along each coordinate by steps that
-/// halve down to 1 mm and 0.05 degrees. Deterministic. Error(input) for no heads, an empty or endless room, a head that
-/// is not finite, or settings that no tracker takes.
+/// The places of which none covers more heads with no larger error than another: the first covers most, the last errs
+/// least. A 5 x 5 x 5 grid of places aimed at the middle of the heads, then the best eight improved along each
+/// coordinate by steps that halve down to 1 mm and 0.05 degrees, for coverages that count as equal to 0.1, 5 and 20 %.
+/// Deterministic. Error(input) for no heads, an empty or endless room, one that obstacles fill, a head that is not
+/// finite, or settings that no tracker takes.
+[[nodiscard]] std::vector<Placement> good_places(const PlaceOptions& options);
+/// The first of them: most heads covered; among equals (to a tenth of a percent) the least expected error.
 [[nodiscard]] Placement best_place(const PlaceOptions& options);
 
 /// Heads of someone at work at `middle` who faces `toward`: normal about it with `spread` [m] per axis, turned as heads

@@ -146,7 +146,7 @@ GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "e837f7a61b241402"),
     ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "0e341c7246fda51e"),
     ("peg_in_hole_step", ["--duration", "3"], "246c5fc06797164b"),
-    ("head_tracking", [], "6447efab4acfe662"),
+    ("head_tracking", [], "c861fa5030cf1fa9"),
     ("slide", [], "12141b5fe201e045"),
     ("stack", [], "c51f094c8fe76c4a"),
 ]

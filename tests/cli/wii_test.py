@@ -124,6 +124,34 @@ class Place(ProgramTest):
         self.assertGreater(abs(c["volume_counted_m3"] - c["volume_as_printed_m3"]), 4 * c["volume_standard_error_m3"])
         self.assertGreater(report["covered"], 0.9)
 
+    def test_a_place_of_the_users_own(self):
+        # Of the help's example: behind the screen, beside it, below it.
+        words = ["wii", "place", "--head", "0", "1.2", "1", "--screen", "0", "1.2", "0", "--samples", "1000"]
+        behind = self.run_json(*words, "--at", "0", "1.2", "-0.2", "0", "0")
+        self.assertEqual(behind["covered"], 0)
+        self.assertIsNone(behind["expected_error_m"])
+        self.assertGreater(len(behind["lost"]["hidden"]), 900)
+        self.assertEqual(sum(len(heads) for heads in behind["lost"].values()), 1000)
+        through = self.run_json(*words, "--at", "0", "1.2", "-0.2", "0", "0", "--screen-size", "0", "0")
+        below = self.run_json(*words, "--at", "0", "0.9", "0.05", "0", "15")
+        for place in through, below:
+            self.assertGreater(place["covered"], 0.5)
+            self.assertEqual(len(sum(place["lost"].values(), [])), round(1000 * (1 - place["covered"])))
+        boxed = self.run_json(*words, "--at", "0", "0.9", "0.05", "0", "15", "--obstacle", "-1", "0.8", "0.3", "1", "2", "0.4")
+        self.assertEqual(boxed["covered"], 0)
+        self.refuse(2, "lower", *words, "--obstacle", "1", "1", "1", "0", "0", "0")
+        self.refuse(2, "--at", *words, "--at", "0", "0.9", "nan", "0", "15")
+
+    def test_places_are_a_list_by_coverage_and_error(self):
+        words = ["wii", "place", "--head", "0", "1.2", "1", "--screen", "0", "1.2", "0", "--room-min", "-0.6", "0.7", "-0.3",
+                 "--room-max", "0.6", "1.7", "0", "--count", "200", "--samples", "1000"]
+        places = self.run_json(*words)["places"]
+        self.assertGreater(len(places), 2)
+        for a, b in zip(places, places[1:]):
+            self.assertGreater(a["expected_error_m"], b["expected_error_m"])
+        text = self.succeed(*words).stdout
+        self.assertEqual(text.splitlines()[0].split(), "x m y m z m heading pitch seen % error cm".split())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -53,5 +53,59 @@ TEST(Place, RefusesNoHeadsAndAnInvertedRoom) {
   EXPECT_THROW((void)best_place(options), Error);
 }
 
+PlaceOptions with_the_screen() {
+  PlaceOptions options = seated_in_front_of_a_screen();
+  options.obstacles = {screen_at({0, 1.2, 0}, {0, 1.2, 1}, 0.6, 0.35)};
+  return options;
+}
+
+TEST(Place, IsAListOfWhichNoneDominatesAnother) {
+  const std::vector<Placement> places = good_places(with_the_screen());
+  ASSERT_GE(places.size(), 3U);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    EXPECT_LT(places[i].error, places[i - 1].error);
+    EXPECT_LT(places[i].covered, places[i - 1].covered + 0.001);
+  }
+}
+
+// A straight walk from the remote to each LED, a millimetre at a time, is the ruler.
+TEST(Place, NothingIsSeenThroughAnObstacle) {
+  PlaceOptions options = with_the_screen();
+  options.obstacles.push_back({{{0.3, 1.3, 0.5}, Quaterniond::Identity()}, {0.05, 0.2, 0.01}});
+  /// How far inside an obstacle [m], along the axis on which it is least.
+  const auto depth = [&](const Vector3d& p_W) {
+    double deepest = -1;
+    for (const Obstacle& o : options.obstacles)
+      deepest = std::max(deepest, (o.half - (o.X_WO.inverse() * p_W).cwiseAbs()).minCoeff());
+    return deepest;
+  };
+  int hidden = 0;
+  for (const Vector3d& p : {Vector3d(0, 1.2, -0.3), Vector3d(0.4, 1.3, -0.2), Vector3d(0, 1.5, 0.05)}) {
+    const Pose X_WR{p, rotation_from_vector({0, std::atan2(-p.x(), 1 - p.z()), 0})};
+    const std::vector<Lost> lost = lost_heads(options, X_WR);
+    for (std::size_t i = 0; i < options.heads.size(); ++i) {
+      double deepest = -1;
+      for (const std::size_t led : {std::size_t{0}, std::size_t{1}}) {
+        const Vector3d p_W = options.heads[i] * options.tracker.leds.p_H[led];
+        for (double s = 0; s <= 1; s += 0.0005) deepest = std::max(deepest, depth(p + s * (p_W - p)));
+      }
+      EXPECT_FALSE(lost[i] == Lost::no && deepest > 0) << i;
+      EXPECT_FALSE(lost[i] == Lost::hidden && deepest < -0.001) << i << ": a step beside its edge at most";
+      hidden += lost[i] == Lost::hidden ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hidden, 300);
+  EXPECT_EQ(judge_place(options, {0, 1.2, 0}, 0, 0).covered, 0) << "within the screen";
+}
+
+TEST(Place, SaysWhichHeadsAreLostAndWhy) {
+  PlaceOptions options;
+  const auto at = [](const Vector3d& p, double yaw) { return Pose{p, head_rotation(yaw, 0, 0)}; };
+  options.heads = {at({0, 0, 1}, 0), at({0, 0, 0.15}, 0), at({0, 0, 6}, 0), at({1, 0, 1}, 0), at({0, 0, 1.5}, 2), at({0, 0, -1}, 0)};
+  const std::vector<Lost> lost = lost_heads(options, Pose());
+  EXPECT_EQ(lost, (std::vector<Lost>{Lost::no, Lost::too_near, Lost::too_far, Lost::out_of_view, Lost::turned_away,
+                                     Lost::out_of_view}));
+}
+
 }  // namespace
 }  // namespace verisim::wii::place_test
