@@ -62,7 +62,8 @@ wii::PlaceOptions place_options(const PlaceCommand& c) {
   if (!c.fov.empty()) options.tracker.fov = {c.fov[0] * wii::kDegree, c.fov[1] * wii::kDegree};
   for (const double side : c.screen_size)
     if (!(side >= 0) || !std::isfinite(side))
-      fail(ErrorKind::usage, "--screen-size {} {}: must be sides in m; 0 0 for no screen", c.screen_size[0], c.screen_size[1]);
+      fail(ErrorKind::usage, "--screen-size {} {}: must be sides in m; 0 0 for no screen", c.screen_size[0],
+           c.screen_size[1]);
   if (c.screen_size[0] > 0 && c.screen_size[1] > 0 && (c.trace.empty() || c.screen_given))
     options.obstacles.push_back(
         wii::screen_at(vector_of(c.screen), middle_of(options.heads), c.screen_size[0], c.screen_size[1]));
@@ -164,13 +165,16 @@ void run_place(const PlaceCommand& c) {
 }
 
 void add_place(CLI::App& wii_command, int& exit_code) {
-  auto* command = wii_command.add_subcommand("place", "Places of a remote that see most of given heads, and see them best");
+  auto* command =
+      wii_command.add_subcommand("place", "Places of a remote that see most of given heads, and see them best");
   auto o = std::make_shared<PlaceCommand>();
   command->add_option("--heads", o->trace, "Wii trace with true poses; else heads are modelled");
   command->add_option("--head", o->head, "Middle of the modelled heads, m (+y up)")->expected(3);
-  auto* screen = command->add_option("--screen", o->screen, "What they face, m; nothing is seen through it")->expected(3);
+  auto* screen =
+      command->add_option("--screen", o->screen, "What they face, m; nothing is seen through it")->expected(3);
   command->add_option("--screen-size", o->screen_size, "Its width and height, m; 0 0: it hides nothing")->expected(2);
-  command->add_option("--obstacle", o->obstacles, "Lower and upper corner of a box that hides what is behind (repeatable)")
+  command
+      ->add_option("--obstacle", o->obstacles, "Lower and upper corner of a box that hides what is behind (repeatable)")
       ->expected(6);
   command->add_option("--at", o->at, "Evaluate this place: x y z, m, heading and pitch, degrees")->expected(5);
   command->add_option("--spread", o->spread, "Standard deviation of their places, m")->expected(3);

@@ -98,7 +98,8 @@ int missing_in_view(const TrackerSettings& settings, const PoseSolver& solver, c
   for (std::size_t led = 0; led < static_cast<std::size_t>(settings.leds.count); ++led) {
     Eigen::Vector2d pixel;
     if (head.blob[led] >= 0 || !solver.project(head.solved.X_RH, settings.leds.p_H[led], 0, pixel)) continue;
-    const bool in_view = pixel.x() > edge && pixel.x() < kWidth - edge && pixel.y() > edge && pixel.y() < kHeight - edge;
+    const bool in_view =
+        pixel.x() > edge && pixel.x() < kWidth - edge && pixel.y() > edge && pixel.y() < kHeight - edge;
     missing += in_view ? 1 : 0;
   }
   return missing;

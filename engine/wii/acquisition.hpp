@@ -14,8 +14,8 @@ struct Acquired {
   double cost = 0;
 };
 
-/// What the sizes of blobs are compared with: that of an LED 1 m away, 0 where none was learned yet (then equal LEDs are
-/// all that is known).
+/// What the sizes of blobs are compared with: that of an LED 1 m away, 0 where none was learned yet (then equal LEDs
+/// are all that is known).
 struct LedSize {
   double at_1m = 0;
 };
@@ -27,8 +27,9 @@ struct LedSize {
 [[nodiscard]] Acquired acquire_head(const Reading& reading, const TrackerSettings& settings, const Pinhole& pinhole,
                                     const PoseSolver& solver, const Upright& upright, LedSize size = {});
 
-/// The same from two blobs of a head whose other LEDs are out of view: the two LEDs and their order for which an upright
-/// head has no other LED within the image. Not found if two such heads are about as likely. At most 12 solutions.
+/// The same from two blobs of a head whose other LEDs are out of view: the two LEDs and their order for which an
+/// upright head has no other LED within the image. Not found if two such heads are about as likely. At most 12
+/// solutions.
 [[nodiscard]] Acquired acquire_head_from_two(const Reading& reading, const TrackerSettings& settings,
                                              const Pinhole& pinhole, const PoseSolver& solver, const Upright& upright,
                                              LedSize size = {});

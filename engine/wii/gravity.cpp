@@ -9,8 +9,8 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kEvidenceMax = 3;      // of one reading, in log-odds: however far off, it decides nothing alone
-constexpr double kRepeated = 0.6;       // of a reading that counts when it repeats the one before: rounding may have made it
+constexpr double kEvidenceMax = 3;  // of one reading, in log-odds: however far off, it decides nothing alone
+constexpr double kRepeated = 0.6;  // of a reading that counts when it repeats the one before: rounding may have made it
 constexpr double kScatterReadings = 5;  // that the scatter before the first reading is worth
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Which way round a pair of equal LEDs is: a head and the same head turned over show the same image.
 //
-// Two hypotheses, weighed by Bayes' rule. Heads are seldom rolled far: the prior is a von Mises density of concentration
-// 1 / roll_sigma^2 with a broad floor, for people do lie down. A pair that is followed from report to report stays the
-// way it is; only what is never upright comes into doubt, slowly. Where it was not seen, the last roll and the prior say
-// how likely either way is.
+// Two hypotheses, weighed by Bayes' rule. Heads are seldom rolled far: the prior is a von Mises density of
+// concentration 1 / roll_sigma^2 with a broad floor, for people do lie down. A pair that is followed from report to
+// report stays the way it is; only what is never upright comes into doubt, slowly. Where it was not seen, the last roll
+// and the prior say how likely either way is.
 #pragma once
 
 #include "engine/base/pose.hpp"

@@ -13,10 +13,10 @@
 namespace verisim::wii {
 namespace {
 
-constexpr double kFits = 9;        // of a cost: three standard deviations
-constexpr double kLikely = 0.1;    // a head that would be another one
+constexpr double kFits = 9;         // of a cost: three standard deviations
+constexpr double kLikely = 0.1;     // a head that would be another one
 constexpr double kSamePlace = 0.1;  // m
-constexpr double kSameTurn = 0.3;  // rad, likewise of how far a head turns in a report or two
+constexpr double kSameTurn = 0.3;   // rad, likewise of how far a head turns in a report or two
 
 class MultiPoint final : public TrackerBase {
  public:
@@ -137,10 +137,10 @@ class MultiPoint final : public TrackerBase {
     return solver_.solve(used, upright_, predicted(t));
   }
 
-  /// A pair in one image and one of its LEDs in the other. The distance to that LED is known, and the second lies on its
-  /// ray, before or behind where the ray comes nearest to the first: two turns. While the yaw is not known, the lone
-  /// blob may also be either LED. If several of these heads are likely, the lone blob is left out; if none fits, a blob
-  /// is no LED, and there is no head.
+  /// A pair in one image and one of its LEDs in the other. The distance to that LED is known, and the second lies on
+  /// its ray, before or behind where the ray comes nearest to the first: two turns. While the yaw is not known, the
+  /// lone blob may also be either LED. If several of these heads are likely, the lone blob is left out; if none fits, a
+  /// blob is no LED, and there is no head.
   [[nodiscard]] SolvedPose solve_with_a_lone_blob(double t, std::span<Sighting> used, bool yaw_known) {
     const bool pair_first = used[0].remote == used[1].remote;
     Sighting& lone = pair_first ? used[2] : used[0];
@@ -315,8 +315,7 @@ class MultiPoint final : public TrackerBase {
       const auto all = std::span(assigned_[i]).first(leds);
       if (valid && std::find(all.begin(), all.end(), -1) == all.end()) {
         clutter_[i].learn(views_[i].reading, all);
-        learn_size(size_[i], views_[i].reading, settings(), assigned_[i],
-                   in_remote(found_.X_RH, static_cast<int>(i)));
+        learn_size(size_[i], views_[i].reading, settings(), assigned_[i], in_remote(found_.X_RH, static_cast<int>(i)));
       } else
         clutter_[i].follow(views_[i].reading);
       assigned_[i].fill(-1);
@@ -368,14 +367,14 @@ class MultiPoint final : public TrackerBase {
   std::array<View, 2> views_;
   Upright upright_;
   SolvedPose found_;
-  bool seen_fully_ = false;  ///< this report's sightings determine yaw
+  bool seen_fully_ = false;      ///< this report's sightings determine yaw
   bool was_seen_fully_ = false;  ///< likewise, of the report before
   bool reacquired_ = false;      ///< this report's head was searched anew
   bool followed_ = false;
   int unassigned_ = 0;  ///< reports in a row with missing LEDs and unassigned blobs
   double t_followed_ = 0;
   double t_full_ = kNever;  ///< when this head's yaw was seen last
-  Pose X_RH_;  ///< followed pose
+  Pose X_RH_;               ///< followed pose
   Vector3d velocity_R_ = Vector3d::Zero();
 };
 

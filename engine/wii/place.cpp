@@ -84,7 +84,10 @@ bool crosses(const Obstacle& o, const Vector3d& from_W, const Vector3d& to_W) {
 /// What a remote sees of a head's first two LEDs.
 struct View {
   View(const PlaceOptions& place, const Pose& X)
-      : options(place), X_WR(X), X_RW(X.inverse()), pinhole(place.tracker.fov),
+      : options(place),
+        X_WR(X),
+        X_RW(X.inverse()),
+        pinhole(place.tracker.fov),
         emission(pinned::cos(place.emission_half_angle)) {}
 
   [[nodiscard]] Lost lost(const Pose& X_WH) const {
@@ -180,12 +183,18 @@ Obstacle screen_at(const Vector3d& middle, const Vector3d& toward, double width,
 
 std::string_view name_of(Lost why) {
   switch (why) {
-    case Lost::no: return "seen";
-    case Lost::out_of_view: return "out of view";
-    case Lost::too_near: return "too near";
-    case Lost::too_far: return "too far";
-    case Lost::turned_away: return "turned away";
-    case Lost::hidden: return "hidden";
+    case Lost::no:
+      return "seen";
+    case Lost::out_of_view:
+      return "out of view";
+    case Lost::too_near:
+      return "too near";
+    case Lost::too_far:
+      return "too far";
+    case Lost::turned_away:
+      return "turned away";
+    case Lost::hidden:
+      return "hidden";
   }
   return "";
 }
@@ -241,10 +250,6 @@ std::vector<Placement> good_places(const PlaceOptions& options) {
       all.push_back(improve(options, grid[order[i]], equal_coverage));
   }
   return front_of(all, options.search.equal_coverage);
-}
-
-Placement best_place(const PlaceOptions& options) {
-  return good_places(options).front();
 }
 
 std::vector<Pose> modelled_heads(const Vector3d& middle, const Vector3d& toward, const Vector3d& spread, int count,

@@ -20,9 +20,10 @@ struct PlaceSearch {
   double equal_coverage = 0.001;      ///< shares of covered heads this near count as equal, and the error decides
 };
 
-/// What a remote cannot stand in nor see through: a screen, a wall, furniture. An axis-aligned box of its own coordinates.
+/// What a remote cannot stand in nor see through: a screen, a wall, furniture. An axis-aligned box of its own
+/// coordinates.
 struct Obstacle {
-  Pose X_WO;                           ///< of its middle
+  Pose X_WO;                         ///< of its middle
   Vector3d half = Vector3d::Zero();  ///< of its sides [m]
 };
 /// A flat screen 4 cm thick that faces `toward`. @pre it does not stand right above or below that
@@ -66,8 +67,6 @@ enum class Lost { no, out_of_view, too_near, too_far, turned_away, hidden };
 /// Deterministic. Error(input) for no heads, an empty or endless room, one that obstacles fill, a head that is not
 /// finite, or settings that no tracker takes.
 [[nodiscard]] std::vector<Placement> good_places(const PlaceOptions& options);
-/// The first of them: most heads covered; among equals (to a tenth of a percent) the least expected error.
-[[nodiscard]] Placement best_place(const PlaceOptions& options);
 
 /// Heads of someone at work at `middle` who faces `toward`: normal about it with `spread` [m] per axis, turned as heads
 /// turn (the settings' yaw and pitch sigma, half of it as roll). @pre count >= 0

@@ -42,8 +42,9 @@ class PoseSolver {
   /// @pre pixel_sigma > 0; the second remote's placement is finite, its rotation unit
   explicit PoseSolver(const TrackerSettings& settings);
 
-  /// From `start`, at most 20 steps, usually 2, a step that makes it worse halved, each about 100 flops per sighting and a 6 x 6 factorisation. No
-  /// allocation. @pre at most kSightingsMax sightings, of remotes 0 and 1; the beliefs' sigmas are above 0
+  /// From `start`, at most 20 steps, usually 2, a step that makes it worse halved, each about 100 flops per sighting
+  /// and a 6 x 6 factorisation. No allocation. @pre at most kSightingsMax sightings, of remotes 0 and 1; the beliefs'
+  /// sigmas are above 0
   [[nodiscard]] SolvedPose solve(std::span<const Sighting> sightings, const Upright& upright, const Pose& start) const;
   /// The pixel at which a remote sees a point of the head; false if it lies behind the lens.
   /// @pre remote is 0 or 1

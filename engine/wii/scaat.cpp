@@ -228,8 +228,8 @@ class Scaat final : public TrackerBase {
     found_from_two_ = false;
     if (!acquired.solved.found) return 0;
     start(acquired.solved.X_RH, acquired.solved.covariance);
-    const auto found_from = static_cast<int>(
-        std::count_if(acquired.blob.begin(), acquired.blob.end(), [](int blob) { return blob >= 0; }));
+    const auto found_from =
+        static_cast<int>(std::count_if(acquired.blob.begin(), acquired.blob.end(), [](int blob) { return blob >= 0; }));
     view_ = view_of(found_from);
     found_from_two_ = found_from == 2;
     return found_from;
@@ -289,9 +289,9 @@ class Scaat final : public TrackerBase {
   }
 
   PoseSolver solver_;
-  PairFollower follower_;  ///< acquires a pair and knows its clutter; the filter itself follows the LEDs
-  Clutter clutter_;        ///< of three LEDs or more
-  LedSize size_;           ///< likewise
+  PairFollower follower_;        ///< acquires a pair and knows its clutter; the filter itself follows the LEDs
+  Clutter clutter_;              ///< of three LEDs or more
+  LedSize size_;                 ///< likewise
   bool found_from_two_ = false;  ///< of three LEDs, whose yaw a pair must not seem to show: found anew in every report
   HalfTurn half_turn_;
   double doubt_ = 0;  ///< that the pair is the other way round

@@ -2,9 +2,9 @@
 //
 // Heuristic: chosen on the trajectories and sensors of validate.hpp. How little their errors hang on each number is in
 // wii_thresholds_test, and half_turn_test for those of a pair that may be the other way round; those that say "not
-// measured" are asked for by none of these trajectories and sensors, at a thousandth or a thousand times their value. Numbers that are limits of the task stand where they are used
-// (admission.hpp: how far and how fast heads are), those of the sensor in channels.hpp, those of the search for the
-// remote's place in place.hpp.
+// measured" are asked for by none of these trajectories and sensors, at a thousandth or a thousand times their value.
+// Numbers that are limits of the task stand where they are used (admission.hpp: how far and how fast heads are), those
+// of the sensor in channels.hpp, those of the search for the remote's place in place.hpp.
 #pragma once
 
 #include "engine/wii/pinhole.hpp"
@@ -28,7 +28,7 @@ struct Thresholds {
   double start_speed = 0.5;    ///< m/s, standard deviation of a head's that was just found: heads at work are slow
   double start_spin = 1;       ///< rad/s, likewise
   double spin_max = 15;        ///< rad/s: faster than any head turns
-  double slack_turn = 0.5;       ///< rad that measuring noise may turn a head by beyond that, however unsure it is
+  double slack_turn = 0.5;     ///< rad that measuring noise may turn a head by beyond that, however unsure it is
   double velocity_gain = 0.5;  ///< share of the newest difference in the velocity of trackers without a filter
 
   // Which blob is which LED (assignment.cpp, acquisition.cpp, multi_point.cpp, scaat.cpp).
@@ -37,23 +37,23 @@ struct Thresholds {
   double cost_margin = 2;        ///< tilt and rounded sizes of a true pair cost less
   double cost_per_led_max = 12;  ///< per LED seen: beyond any pixel noise, so not this head
   double acquisition_cost_per_led = 5;  ///< per LED of a head that is found: its shape, and how upright it is
-  double gate_sigmas = 5;        ///< of what a measurement was expected to be
-  double pixel_gate = 15;        ///< pixel, beside what the state's uncertainty allows
-  double gate = 60;              ///< pixel, of trackers without a filter: a head's motion between two reports
-  double gate_growth = 1500;     ///< pixel per s without a report: 1.1 m/s at 1 m
-  double pixel_gate_max = 200;   ///< pixel, of a filter, however unsure it is: a fifth of the image
-  double spread_gate = 3;     ///< standard deviations of the state that the filter's gate is widened by; not measured
-  double pair_gate = 20;      ///< pixel, of a pair that is followed, beside half its spacing and its speed; not measured
-  double pair_speed = 2000;   ///< pixel per s: 1.5 m/s at 1 m, for gaps of some reports
-  double pair_memory = 0.25;  ///< s that a pair is followed for; a head needs longer to roll over
-  double lost_head_memory = 0.25;    ///< s that a lost head is looked for where it was
+  double gate_sigmas = 5;               ///< of what a measurement was expected to be
+  double pixel_gate = 15;               ///< pixel, beside what the state's uncertainty allows
+  double gate = 60;                     ///< pixel, of trackers without a filter: a head's motion between two reports
+  double gate_growth = 1500;            ///< pixel per s without a report: 1.1 m/s at 1 m
+  double pixel_gate_max = 200;          ///< pixel, of a filter, however unsure it is: a fifth of the image
+  double spread_gate = 3;    ///< standard deviations of the state that the filter's gate is widened by; not measured
+  double pair_gate = 20;     ///< pixel, of a pair that is followed, beside half its spacing and its speed; not measured
+  double pair_speed = 2000;  ///< pixel per s: 1.5 m/s at 1 m, for gaps of some reports
+  double pair_memory = 0.25;          ///< s that a pair is followed for; a head needs longer to roll over
+  double lost_head_memory = 0.25;     ///< s that a lost head is looked for where it was
   double size_scale = 0.7;            ///< blob size units: a true pair differs by no more
-  double size_learning = 0.02;       ///< per report: cells run down slowly, and brightness with them
-  double size_cost_max = 2;          ///< sizes of real sensors follow distance badly: a hint, no proof; not measured
+  double size_learning = 0.02;        ///< per report: cells run down slowly, and brightness with them
+  double size_cost_max = 2;           ///< sizes of real sensors follow distance badly: a hint, no proof; not measured
   double repetition_learning = 0.02;  ///< per coordinate pair
-  double size_sigma = 0.5;           ///< blob size units: a size is a whole number
-  double size_spread = 1.5;  ///< likewise, of all LEDs of a head: they shine to where it looks
-  double size_repeats = 50;          ///< reports that show the same rounding error of a size
+  double size_sigma = 0.5;            ///< blob size units: a size is a whole number
+  double size_spread = 1.5;           ///< likewise, of all LEDs of a head: they shine to where it looks
+  double size_repeats = 50;           ///< reports that show the same rounding error of a size
   double led_scale = 10;          ///< pixel: how near further LEDs are to where the pair alone puts them; not measured
   double missing_led_cost = 100;  ///< of a further LED that is nowhere near its place; not measured
   int confirmations = 5;          ///< images in a row that confirm a jump to another pair
@@ -69,14 +69,14 @@ struct Thresholds {
   double both_silent = 0.05;       ///< s without the first remote after which the second reports
 
   // Gravity (gravity.cpp).
-  double shaken = 0.3;         ///< g off 1: the reading holds more than gravity
-  double gravity_gap = 0.25;   ///< s; a rate says nothing after a longer gap
-  double direction_min = 0.1;  ///< g; opposed readings can average to nothing
-  double scatter = 0.005;      ///< g, of a reading about its mean, before there are readings
+  double shaken = 0.3;          ///< g off 1: the reading holds more than gravity
+  double gravity_gap = 0.25;    ///< s; a rate says nothing after a longer gap
+  double direction_min = 0.1;   ///< g; opposed readings can average to nothing
+  double scatter = 0.005;       ///< g, of a reading about its mean, before there are readings
   double scatter_min = 0.0003;  ///< g: no accelerometer is better
-  double scatter_time = 1;     ///< s that the scatter is learned over
-  double resting_for = 10;     ///< s, mean time that a remote rests
-  double moving_for = 2;       ///< s, likewise moves
+  double scatter_time = 1;      ///< s that the scatter is learned over
+  double resting_for = 10;      ///< s, mean time that a remote rests
+  double moving_for = 2;        ///< s, likewise moves
 
   // The prior, and what is sure enough.
   double sigma_max = 0.15;      ///< m: less sure than this is not valid

@@ -50,7 +50,7 @@ struct LedLayout {
 struct TrackerSettings {
   LedLayout leds;
   FieldOfView fov;
-  double pixel_sigma = 0.4;            ///< pixel; rounding alone is 1/sqrt(12) = 0.29, with 0.3 px of noise 0.42
+  double pixel_sigma = 0.4;  ///< pixel; rounding alone is 1/sqrt(12) = 0.29, with 0.3 px of noise 0.42
   /// rad of tilt that no averaging removes; rounding to 104 counts per g is 0.0028. What readings scatter is learned.
   double gravity_sigma = 0.003;
   double gravity_time_constant = 0.1;  ///< s, smoothing of the accelerometer

@@ -87,8 +87,8 @@ void TrackerBase::conclude(double t, Estimate& result) {
   report_.t = t;
   report_.news = true;
   report_.valid = verdict != Admission::Verdict::refused;
-  report_.reacquired = report_.valid && (!was_valid || verdict == Admission::Verdict::elsewhere ||
-                                         turned_too_fast(t - before, result));
+  report_.reacquired =
+      report_.valid && (!was_valid || verdict == Admission::Verdict::elsewhere || turned_too_fast(t - before, result));
   if (report_.valid || (result.known && !result.usable)) {
     report_.pose = result.pose;
     report_.covariance = result.covariance;

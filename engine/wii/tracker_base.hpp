@@ -48,8 +48,8 @@ class TrackerBase : public Tracker {
  private:
   bool accept_time(double t, int remote, double& dt);
   void conclude(double t, Estimate& result);
-  /// Whether the head seems to have turned, within `dt` since the report before, by more than heads do. An excess within
-  /// 4 standard deviations is measuring noise: the turn is drawn back to what heads do.
+  /// Whether the head seems to have turned, within `dt` since the report before, by more than heads do. An excess
+  /// within 4 standard deviations is measuring noise: the turn is drawn back to what heads do.
   [[nodiscard]] bool turned_too_fast(double dt, Estimate& result) const;
 
   TrackerSettings settings_;

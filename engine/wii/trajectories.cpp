@@ -26,7 +26,8 @@ constexpr int kTurnSamples = 200;
 constexpr double kAside = 5 * kDegree;
 /// Powers of the inverse root of x^5 = x + 1, as fractions of 2^64: the most even spread in four dimensions (Roberts
 /// 2018).
-constexpr std::array<std::uint64_t, 4> kStartSteps = {0xdb4f0b9175ae2165, 0xbbe0563303a4615f, 0xa0f2ec75a1fe1575, 0x89e182857d9ed688};
+constexpr std::array<std::uint64_t, 4> kStartSteps = {0xdb4f0b9175ae2165, 0xbbe0563303a4615f, 0xa0f2ec75a1fe1575,
+                                                      0x89e182857d9ed688};
 
 Situation level_remote(const Vector3d& p_L, const Quaterniond& R_LH = Quaterniond::Identity()) {
   return {.X_WR = {}, .X_WH = {p_L, R_LH}};

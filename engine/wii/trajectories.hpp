@@ -43,14 +43,14 @@ struct Sine {
 /// @pre as many poses as times
 [[nodiscard]] Trajectory recorded_trajectory(const std::string& name, std::vector<double> t, std::vector<Pose> X_LH);
 
-/// The same motion begun from the pose that belongs to `seed`: seen up to 5 degrees aside and above or below, and turned
-/// so that over many seeds and all times the head is turned as far as trackers assume: by `yaw_sigma` and `pitch_sigma`
-/// [rad] in the root mean square, or by as much as the motion turns it itself, where that is more.
+/// The same motion begun from the pose that belongs to `seed`: seen up to 5 degrees aside and above or below, and
+/// turned so that over many seeds and all times the head is turned as far as trackers assume: by `yaw_sigma` and
+/// `pitch_sigma` [rad] in the root mean square, or by as much as the motion turns it itself, where that is more.
 [[nodiscard]] Trajectory from_start_pose(const Trajectory& path, double yaw_sigma, double pitch_sigma,
                                          std::uint64_t seed);
 
-/// static, grid, sweep-x, sweep-z, far, natural, natural-yaw, edges, dropout-one, dropout-both, swap, upside-down, tilted,
-/// moving-remote.
+/// static, grid, sweep-x, sweep-z, far, natural, natural-yaw, edges, dropout-one, dropout-both, swap, upside-down,
+/// tilted, moving-remote.
 [[nodiscard]] const std::vector<Trajectory>& trajectories();
 /// Error(input) for a name that is not one of them.
 [[nodiscard]] const Trajectory& trajectory(std::string_view name);

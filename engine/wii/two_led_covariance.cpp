@@ -17,8 +17,8 @@ Matrix6d two_led_covariance(const TrackerSettings& settings, const Pinhole& pinh
   VERISIM_ASSERT(is_finite(p_L));
   const Vector3d head_x(cos_roll, sin_roll, 0);
   const Vector3d head_y(-sin_roll, cos_roll, 0);
-  Eigen::Matrix4d seen;                         // P_i (dp, droll)
-  Eigen::Matrix<double, 4, 2> turned;           // P_i d_i of a yaw and of a pitch
+  Eigen::Matrix4d seen;                // P_i (dp, droll)
+  Eigen::Matrix<double, 4, 2> turned;  // P_i d_i of a yaw and of a pitch
   Eigen::Vector4d depth;
   for (Eigen::Index i = 0; i < 2; ++i) {
     const Vector3d& p_H = settings.leds.p_H[static_cast<std::size_t>(i)];

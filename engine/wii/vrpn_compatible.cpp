@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
-#include "engine/wii/trackers.hpp"
 #include "engine/wii/gravity.hpp"
+#include "engine/wii/trackers.hpp"
 #include "engine/wii/two_led_covariance.hpp"
 
 namespace verisim::wii {
@@ -122,7 +122,7 @@ class VrpnCompatible final : public Tracker {
     report_.pose.position = {x, y, z};  // slip: never levelled
     report_.pose.rotation = {pinned::cos(roll / 2), 0, 0, pinned::sin(roll / 2)};
     if (!level) report_.pose.rotation = report_.pose.rotation * levelling_;  // slip: about the head's axes
-    if (!report_.pose.position.allFinite()) return;  // and the report before stays
+    if (!report_.pose.position.allFinite()) return;                          // and the report before stays
     // Upstream claims no accuracy. This is what its sensor would allow, for comparison with its errors.
     report_.covariance =
         two_led_covariance(settings_, pinhole_, report_.pose.position, pinned::cos(roll), pinned::sin(roll));

@@ -66,7 +66,7 @@ constexpr std::array kAccelerometers = {Accelerometer{"Exact", 0, 0},
 
 struct Rms {
   double filter = 0, smoothing = 0, worst = 0;  ///< rad, of the direction of gravity
-  double nees = 0;                              ///< over two degrees of freedom; rounding errors repeat, so they count beside the variance
+  double nees = 0;  ///< over two degrees of freedom; rounding errors repeat, so they count beside the variance
 };
 /// Of a motion from `settle` to `until` [s].
 Rms rms_over(const Tilt& tilt, double until, const Accelerometer& accelerometer, std::uint64_t seed,
@@ -157,9 +157,8 @@ TEST_P(OfAccelerometers, FollowsAMovingRemoteAsSmoothingAloneDoes) {
   const int seeds = test::by_length(1, 5, 100);
   for (const double frequency : {0.02, 0.05, 0.1, 0.2, 0.3, 0.6, 1.0, 2.0})
     for (const double degrees : {0.3, 1.0, 4.0, 15.0}) {
-      const Rms rms = over_seeds(seeds, [&](std::uint64_t seed) {
-        return rms_over(sway(frequency, degrees * kDegree, seed), 20, a, seed);
-      });
+      const Rms rms = over_seeds(
+          seeds, [&](std::uint64_t seed) { return rms_over(sway(frequency, degrees * kDegree, seed), 20, a, seed); });
       EXPECT_LE(rms.filter, 1.15 * rms.smoothing + 0.0002) << frequency << " Hz, " << degrees << " degrees";
     }
 }

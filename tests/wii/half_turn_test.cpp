@@ -16,8 +16,8 @@ namespace verisim::wii {
 namespace {
 
 /// A head 1 m away that rolls from upright to `roll` between 1 and 2 s and back between 6 and 7 s; LED `led` (-1: both)
-/// is dark for `dark` seconds from 4 s on. All drawn from the seed. Beyond half a second nobody can know which way round
-/// it is then: the report has to say so.
+/// is dark for `dark` seconds from 4 s on. All drawn from the seed. Beyond half a second nobody can know which way
+/// round it is then: the report has to say so.
 struct Rolled {
   explicit Rolled(std::uint64_t seed) : random(seed, "rolled") {
     roll = (100 + 70 * random.uniform(0)) * kDegree * (random.uniform(1) < 0.5 ? -1 : 1);
@@ -67,7 +67,8 @@ Turns turns_of(std::string_view tracker, const Trajectory& path, const SensorCas
       turns.worst_sigmas = std::max(turns.worst_sigmas, std::abs(off.z()) / std::sqrt(report.covariance(5, 5)));
       if (last.valid && !report.reacquired) {
         const double turned = (report.pose.rotation * last.pose.rotation.conjugate()).normalized().vec().norm();
-        turns.fastest_untold = std::max(turns.fastest_untold, 2 * std::asin(std::min(1.0, turned)) / (report.t - last.t));
+        turns.fastest_untold =
+            std::max(turns.fastest_untold, 2 * std::asin(std::min(1.0, turned)) / (report.t - last.t));
       }
     }
     last = report;

@@ -110,8 +110,8 @@ TEST(Numbers, OrientationsAreAsFarOffAsTheySay) {
   options.seeds = 20;
   options.start_poses = true;
   const std::size_t step = test::by_length(14, 1, 1);
-  for (const char* sensor : test::by_length<std::vector<const char*>>({"wiimote"}, {"wiimote"},
-                                                                      {"wiimote", "accelerometer", "ideal"}))
+  for (const char* sensor :
+       test::by_length<std::vector<const char*>>({"wiimote"}, {"wiimote"}, {"wiimote", "accelerometer", "ideal"}))
     for (std::size_t i = 0; i < trajectories().size(); i += step)
       for (const char* tracker : {"geometric", "three-led", "scaat", "stereo", "scaat/3"}) {
         const std::string& path = trajectories()[i].name;

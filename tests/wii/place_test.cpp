@@ -20,7 +20,7 @@ TEST(Place, LooksBackAtASingleHead) {
   PlaceOptions options;
   options.heads = {{{0, 0, 1}, Quaterniond::Identity()}};
   options.room_min = options.room_max = {0.2, 0.1, 0};
-  const Placement best = best_place(options);
+  const Placement best = good_places(options).front();
   EXPECT_EQ(best.covered, 1);
   EXPECT_LT(std::abs(best.heading - pinned::atan2(-0.2, 1)), 21.5 * kDegree);
   EXPECT_LT(std::abs(best.pitch - pinned::atan2(-0.1, 1)), 16 * kDegree);
@@ -28,7 +28,7 @@ TEST(Place, LooksBackAtASingleHead) {
 
 TEST(Place, IsNoWorseThanAnyPlaceOfACoarseGrid) {
   const PlaceOptions options = seated_in_front_of_a_screen();
-  const Placement best = best_place(options);
+  const Placement best = good_places(options).front();
   for (const double x : {-0.5, 0.0, 0.5})
     for (const double y : {0.8, 1.2, 1.6})
       for (const double heading : {-0.3, 0.0, 0.3})
@@ -38,7 +38,7 @@ TEST(Place, IsNoWorseThanAnyPlaceOfACoarseGrid) {
 
 TEST(Place, StaysInTheRoomAndSeesNearlyEverySeatedHead) {
   const PlaceOptions options = seated_in_front_of_a_screen();
-  const Placement best = best_place(options);
+  const Placement best = good_places(options).front();
   EXPECT_TRUE((best.X_WR.position.array() >= options.room_min.array()).all());
   EXPECT_TRUE((best.X_WR.position.array() <= options.room_max.array()).all());
   EXPECT_GT(best.covered, 0.98);
@@ -47,10 +47,10 @@ TEST(Place, StaysInTheRoomAndSeesNearlyEverySeatedHead) {
 
 TEST(Place, RefusesNoHeadsAndAnInvertedRoom) {
   PlaceOptions options;
-  EXPECT_THROW((void)best_place(options), Error);
+  EXPECT_THROW((void)good_places(options).front(), Error);
   options.heads = {{{0, 0, 1}, Quaterniond::Identity()}};
   std::swap(options.room_min, options.room_max);
-  EXPECT_THROW((void)best_place(options), Error);
+  EXPECT_THROW((void)good_places(options).front(), Error);
 }
 
 PlaceOptions with_the_screen() {
@@ -101,7 +101,8 @@ TEST(Place, NothingIsSeenThroughAnObstacle) {
 TEST(Place, SaysWhichHeadsAreLostAndWhy) {
   PlaceOptions options;
   const auto at = [](const Vector3d& p, double yaw) { return Pose{p, head_rotation(yaw, 0, 0)}; };
-  options.heads = {at({0, 0, 1}, 0), at({0, 0, 0.15}, 0), at({0, 0, 6}, 0), at({1, 0, 1}, 0), at({0, 0, 1.5}, 2), at({0, 0, -1}, 0)};
+  options.heads = {at({0, 0, 1}, 0), at({0, 0, 0.15}, 0), at({0, 0, 6}, 0),
+                   at({1, 0, 1}, 0), at({0, 0, 1.5}, 2),  at({0, 0, -1}, 0)};
   const std::vector<Lost> lost = lost_heads(options, Pose());
   EXPECT_EQ(lost, (std::vector<Lost>{Lost::no, Lost::too_near, Lost::too_far, Lost::out_of_view, Lost::turned_away,
                                      Lost::out_of_view}));

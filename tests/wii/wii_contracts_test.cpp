@@ -200,13 +200,13 @@ TEST(Place, RefusesGlassesAndLensesThatNoTrackerTakes) {
   PlaceOptions options;
   options.heads = {{{0, 0, 1}, Quaterniond::Identity()}};
   options.tracker.leds.p_H[1] = options.tracker.leds.p_H[0];
-  expect_refused([&] { return best_place(options); }, "leds: the first two are 0 m apart");
+  expect_refused([&] { return good_places(options).front(); }, "leds: the first two are 0 m apart");
   options.tracker = {};
   options.tracker.fov = kNoView;
-  expect_refused([&] { return best_place(options); }, "horizontal field of view");
+  expect_refused([&] { return good_places(options).front(); }, "horizontal field of view");
   options.tracker = {};
   options.room_max.x() = kInfinity;
-  expect_refused([&] { return best_place(options); }, "a corner of the room is not finite");
+  expect_refused([&] { return good_places(options).front(); }, "a corner of the room is not finite");
 }
 
 TEST(Tracker, RefusesASecondRemoteThatIsNowhere) {

@@ -33,9 +33,9 @@ ValidationRow row(const Number& n, double factor) {
   return validate_one(n.tracker, trajectory(n.trajectory), sensor_case(n.sensor), options);
 }
 
-// What a tracker does with a head of three LEDs of which one is dark hangs on its numbers, by up to 62 %; so does how two
-// remotes predict where a blob will be, by 30 %, beside errors of 2 mm. All else does by a tenth at most, most of it not
-// at all.
+// What a tracker does with a head of three LEDs of which one is dark hangs on its numbers, by up to 62 %; so does how
+// two remotes predict where a blob will be, by 30 %, beside errors of 2 mm. All else does by a tenth at most, most of
+// it not at all.
 class WiiThresholds : public ::testing::TestWithParam<Number> {};
 INSTANTIATE_TEST_SUITE_P(
     HalfAndDouble, WiiThresholds,
@@ -138,11 +138,13 @@ struct OneSided : Number {
 class WiiOneSided : public ::testing::TestWithParam<OneSided> {};
 INSTANTIATE_TEST_SUITE_P(
     HalfOrDouble, WiiOneSided,
-    ::testing::Values(
-        OneSided{{"acquisition_cost_per_led", &Thresholds::acquisition_cost_per_led, "three-led", "edges", "lamp", 1.05},
-                 0.5, 2},
-        OneSided{{"size_spread", &Thresholds::size_spread, "geometric", "dropout-one", "lamp", 1.05}, 0.7, 2},
-        OneSided{{"size_scale", &Thresholds::size_scale, "geometric", "edges", "lamp", 1.05}, 0.9, 2}),
+    ::testing::Values(OneSided{{"acquisition_cost_per_led", &Thresholds::acquisition_cost_per_led, "three-led", "edges",
+                                "lamp", 1.05},
+                               0.5,
+                               2},
+                      OneSided{
+                          {"size_spread", &Thresholds::size_spread, "geometric", "dropout-one", "lamp", 1.05}, 0.7, 2},
+                      OneSided{{"size_scale", &Thresholds::size_scale, "geometric", "edges", "lamp", 1.05}, 0.9, 2}),
     [](const auto& number) { return std::string(number.param.name); });
 
 TEST_P(WiiOneSided, TakeALampForAnLedBeyondIt) {
@@ -213,11 +215,11 @@ PlaceOptions in_front_of_a_screen() {
 }
 
 TEST_P(WiiPlaceSearch, HardlyChangesWhatThePlaceIsWorth) {
-  static const Placement usual = best_place(in_front_of_a_screen());
+  static const Placement usual = good_places(in_front_of_a_screen()).front();
   for (const double factor : {0.5, 2.0}) {
     PlaceOptions options = in_front_of_a_screen();
     GetParam().scale(options.search, factor);
-    const Placement place = best_place(options);
+    const Placement place = good_places(options).front();
     EXPECT_NEAR(place.covered, usual.covered, 0.005) << factor;
     EXPECT_NEAR(place.error, usual.error, 0.05 * usual.error) << factor;
   }
