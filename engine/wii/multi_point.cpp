@@ -3,20 +3,15 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
-#include "engine/base/pinned_math.hpp"
 #include "engine/wii/acquisition.hpp"
 #include "engine/wii/half_turn.hpp"
+#include "engine/wii/lone_blob.hpp"
 #include "engine/wii/tracker_base.hpp"
 #include "engine/wii/trackers.hpp"
 #include "engine/wii/two_led_covariance.hpp"
 
 namespace verisim::wii {
 namespace {
-
-constexpr double kFits = 9;         // of a cost: three standard deviations
-constexpr double kLikely = 0.1;     // a head that would be another one
-constexpr double kSamePlace = 0.1;  // m
-constexpr double kSameTurn = 0.3;   // rad, likewise of how far a head turns in a report or two
 
 class MultiPoint final : public TrackerBase {
  public:
@@ -131,102 +126,19 @@ class MultiPoint final : public TrackerBase {
     if (n_most < 2) return {};  // one blob in each of two images may be clutter
     seen_fully_ = n >= 3;
     if (!seen_fully_) take_last_as_prior(t, upright_);
-    const std::span<Sighting> used = std::span(sightings).first(static_cast<std::size_t>(n));
+    const std::span<const Sighting> used = std::span(sightings).first(static_cast<std::size_t>(n));
+    return remotes_ == 2 && n == 3 ? with_a_lone_blob(t, used) : solver_.solve(used, upright_, predicted(t));
+  }
+
+  [[nodiscard]] SolvedPose with_a_lone_blob(double t, std::span<const Sighting> used) {
     const bool yaw_known = std::abs(t - t_full_) <= settings().thresholds.lone_blob_memory;
-    if (remotes_ == 2 && n == 3) return solve_with_a_lone_blob(t, used, yaw_known);
-    return solver_.solve(used, upright_, predicted(t));
-  }
-
-  /// A pair in one image and one of its LEDs in the other. The distance to that LED is known, and the second lies on
-  /// its ray, before or behind where the ray comes nearest to the first: two turns. While the yaw is not known, the
-  /// lone blob may also be either LED. If several of these heads are likely, the lone blob is left out; if none fits, a
-  /// blob is no LED, and there is no head.
-  [[nodiscard]] SolvedPose solve_with_a_lone_blob(double t, std::span<Sighting> used, bool yaw_known) {
-    const bool pair_first = used[0].remote == used[1].remote;
-    Sighting& lone = pair_first ? used[2] : used[0];
-    const std::span<const Sighting> pair = used.subspan(pair_first ? 0 : 1, 2);
-    const Pose start = predicted(t);
-    std::array<SolvedPose, 4> heads;
-    std::size_t count = 0;
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 2 && !(yaw_known && best <= kFits); ++i) {
-      const bool first_is_lone = (lone.p_H == pair[0].p_H) != (i == 1);
-      const Sighting& same = first_is_lone ? pair[0] : pair[1];
-      const Sighting& other = first_is_lone ? pair[1] : pair[0];
-      lone.p_H = same.p_H;
-      for (const double side : {1.0, -1.0}) {
-        const SolvedPose head = solver_.solve(used, upright_, start_of_turn(lone, same, other, side, start.rotation));
-        if (!head.found) continue;
-        heads[count] = judged(head, yaw_known);
-        best = std::min(best, heads[count++].cost);
-      }
-    }
-    if (!(best <= kFits)) return {};
-    const SolvedPose head = the_only_one(std::span(heads).first(count));
-    if (head.found) return head;
-    seen_fully_ = false;
+    const LoneBlobSolver solver(settings(), pinhole(), solver_, upright_);
+    const LoneBlobSolver::Result result =
+        solver.solve(used, predicted(t), yaw_known ? std::optional(X_RH_.rotation) : std::nullopt);
+    if (!result.ambiguous) return result.head;
+    seen_fully_ = false;  // without it
     take_last_as_prior(t, upright_);
-    return solver_.solve(pair, upright_, start);
-  }
-
-  /// The head of least cost, if no other is likely. All others widen its covariance, as likely as they are.
-  /// @pre there is one
-  [[nodiscard]] static SolvedPose the_only_one(std::span<const SolvedPose> heads) {
-    const SolvedPose& best =
-        *std::min_element(heads.begin(), heads.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
-    SolvedPose head = best;
-    for (const SolvedPose& other : heads) {
-      Vector6d apart;
-      apart << other.X_RH.position - best.X_RH.position,
-          vector_from_rotation((other.X_RH.rotation * best.X_RH.rotation.conjugate()).normalized());
-      const double likely = 1 / (1 + pinned::exp((other.cost - best.cost) / 2));
-      const bool another = apart.tail<3>().norm() > kSameTurn || apart.head<3>().norm() > kSamePlace;
-      if (likely > kLikely && another) return {};
-      head.covariance += likely * apart * apart.transpose();
-    }
-    return head;
-  }
-
-  /// A cost for comparison with other turns: the prior that heads are upright, wide while one pose is sought, counts in
-  /// full, and a head turns little between two reports.
-  [[nodiscard]] SolvedPose judged(SolvedPose head, bool yaw_known) const {
-    const Matrix3d R_LH = upright_.C_LR * head.X_RH.rotation.toRotationMatrix();
-    const double width = settings().thresholds.prior_width;
-    const double yaw = R_LH(2, 0) / settings().yaw_sigma;
-    const double pitch = R_LH(2, 1) / settings().pitch_sigma;
-    head.cost += (1 - 1 / (width * width)) * (yaw * yaw + pitch * pitch);
-    if (yaw_known) {
-      const Vector3d turn =
-          vector_from_rotation((head.X_RH.rotation * X_RH_.rotation.conjugate()).normalized()) * (3 / kSameTurn);
-      head.cost += turn.squaredNorm();
-    }
-    return head;
-  }
-
-  /// Where the head is if the LED of two images lies where its rays meet, and the other on its own ray, at the glasses'
-  /// distance from it, behind (side 1) or before (-1) the point that is nearest. `near` settles what is left open.
-  [[nodiscard]] Pose start_of_turn(const Sighting& lone, const Sighting& same, const Sighting& other, double side,
-                                   const Quaterniond& near) const {
-    const Ray a = ray_of(lone), b = ray_of(same), c = ray_of(other);
-    const double ab = a.along.dot(b.along);
-    const Vector3d apart = b.eye - a.eye;
-    const double on_b = (ab * a.along.dot(apart) - b.along.dot(apart)) / std::max(1 - ab * ab, 1e-9);
-    const Vector3d known = b.eye + on_b * b.along;
-    const Vector3d nearest = c.eye + c.along.dot(known - c.eye) * c.along;
-    const double spacing_square = (other.p_H - same.p_H).squaredNorm();
-    const double along = std::sqrt(std::max(0.0, spacing_square - (nearest - known).squaredNorm()));
-    const Vector3d line = nearest + side * along * c.along - known;
-    const Quaterniond turn = Quaterniond::FromTwoVectors(near * (other.p_H - same.p_H), line).normalized();
-    const Quaterniond R_RH = (turn * near).normalized();
-    return {known - R_RH * same.p_H, R_RH};
-  }
-
-  struct Ray {
-    Vector3d eye, along;
-  };
-  [[nodiscard]] Ray ray_of(const Sighting& s) const {
-    const Vector3d ray = pinhole().ray(s.u, s.v).normalized();
-    return s.remote == 0 ? Ray{Vector3d::Zero(), ray} : Ray{X_R1R2_.position, X_R1R2_.rotation * ray};
+    return solver_.solve(pair_of(used), upright_, predicted(t));
   }
 
   int follow_in(double t, int remote, std::span<Sighting> sightings) {
