@@ -9,6 +9,7 @@
 #include "engine/base/text.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
+#include "engine/cli/wii_wire.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/record/output_place.hpp"
 #include "engine/script/wii_recording.hpp"
@@ -52,10 +53,18 @@ class ChannelRecord {
   /// is not later than the last one.
   void add(const vrpn::Received& message) {
     const auto analog = vrpn::decode_analog(message.payload);
+    if (!analog || analog->count < wii::kChannelsMin) {
+      ++too_few_;
+      return;
+    }
+    if (!finite(*analog)) {
+      ++not_finite_;
+      return;
+    }
     if (trace_.values.empty()) begin_ = message.time;
     const std::int64_t t = microseconds_between(begin_, message.time);
-    if (!analog || analog->count < wii::kChannelsMin || t <= last_t_ || !finite(*analog)) {
-      ++left_out_;
+    if (t <= last_t_) {
+      ++not_later_;
       return;
     }
     last_t_ = t;
@@ -65,7 +74,12 @@ class ChannelRecord {
   }
 
   [[nodiscard]] const Trace& trace() const { return trace_; }
-  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+  [[nodiscard]] std::uint64_t count_left_out() const { return too_few_ + not_finite_ + not_later_; }
+  [[nodiscard]] std::string left_out() const {
+    if (count_left_out() == 0) return "";
+    return fmt::format("{} reports with fewer than {} channels, {} not finite, {} not later than the one before",
+                       too_few_, wii::kChannelsMin, not_finite_, not_later_);
+  }
 
  private:
   [[nodiscard]] static bool finite(const vrpn::Analog& analog) {
@@ -76,26 +90,45 @@ class ChannelRecord {
   Trace trace_;
   vrpn::Timestamp begin_;
   std::int64_t last_t_ = -1;
-  std::uint64_t left_out_ = 0;
+  std::uint64_t too_few_ = 0, not_finite_ = 0, not_later_ = 0;
 };
 
-/// Until the server leaves, the time is up, or Ctrl-C. Error(io) if no server answers.
-void listen_to(vrpn::Client& client, const ListenCommand& c, ChannelRecord& record) {
+/// What was heard: a remote's channels or a tracker's poses.
+struct Heard {
+  explicit Heard(const ListenCommand& c) : channels(c) {}
+  ChannelRecord channels;
+  HeardPoses poses;
+
+  [[nodiscard]] std::size_t reports() const { return channels.trace().rows() + poses.reports().size(); }
+  [[nodiscard]] std::uint64_t count_left_out() const {
+    return channels.count_left_out() + static_cast<std::uint64_t>(poses.count_left_out());
+  }
+  [[nodiscard]] std::string left_out() const {
+    const std::string a = channels.left_out(), b = poses.left_out();
+    return a.empty() || b.empty() ? a + b : a + "; " + b;
+  }
+};
+
+/// Until the server leaves, the time is up, or Ctrl-C: returns which. Error(io) if no server answers.
+std::string listen_to(vrpn::Client& client, const ListenCommand& c, Heard& heard) {
   const StopWatch watch;
   bool was_connected = false;
   while (!was_interrupted() && watch.seconds() < c.duration) {
     client.turn(wire_time(), kWait, [&](const vrpn::Received& message) {
-      if (message.type == vrpn::kAnalog) record.add(message);
+      if (message.type == vrpn::kAnalog) heard.channels.add(message);
+      heard.poses.take(message);
       if (message.type == vrpn::kText)
         if (const auto text = vrpn::decode_text(message.payload); text && text->severity > 0)
           std::fprintf(stderr, "%s: %s\n", c.remote.c_str(), shown(text->text).c_str());
     });
-    if (was_connected && !client.connected()) return;
+    if (was_connected && !client.connected())
+      return client.last_loss().empty() ? "the server left" : fmt::format("the server left ({})", client.last_loss());
     was_connected = was_connected || client.connected();
     if (!was_connected && watch.seconds() > c.patience)
       fail(ErrorKind::io, "{}: no VRPN server answered within {} s{}; start it, or check host and port", c.remote,
            c.patience, client.last_loss().empty() ? "" : " (" + client.last_loss() + ")");
   }
+  return was_interrupted() ? "interrupted" : fmt::format("{} s are over", c.duration);
 }
 
 std::string poses_of(const wii::Recording& recording, const std::string& tracker_name) {
@@ -106,36 +139,55 @@ std::string poses_of(const wii::Recording& recording, const std::string& tracker
   return text;
 }
 
+std::string poses_of(const HeardPoses& poses) {
+  std::string text = kPoseHeader;
+  for (const wii::Report& r : poses.reports()) text += pose_row(r.t, r);
+  return text;
+}
+
+/// Error(input) if what came is not what was asked for.
+void check_heard(const ListenCommand& c, const Heard& heard) {
+  if (heard.reports() == 0)
+    fail(ErrorKind::input, "{}: no report with {} channels came, nor a pose{}; is it the analog device, or a tracker?",
+         c.remote, wii::kChannelsMin,
+         heard.count_left_out() > 0 ? fmt::format(" (left out {})", heard.left_out()) : "");
+  if (heard.channels.trace().rows() == 0 && !c.out.path.empty())
+    fail(ErrorKind::input, "{}: sends poses and no channels; write them with --poses alone", c.remote);
+}
+
 int listen(const ListenCommand& c) {
   if (c.out.path.empty() && c.poses.empty())
     fail(ErrorKind::usage, "wii listen: nothing to write; give -o TRACE, --poses CSV, or both");
   if (c.out.path == c.poses)
     fail(ErrorKind::usage, "wii listen: -o and --poses both name {}; give each a file of its own", c.poses);
-  ChannelRecord record(c);
+  Heard heard(c);
   wii::TrackerSettings settings =
-      wii_settings_of(c.remote, record.trace());  // doubts --leds and --fov before listening
+      wii_settings_of(c.remote, heard.channels.trace());  // doubts --leds and --fov before listening
   if (!c.poses.empty()) (void)wii::make_tracker(c.tracker, settings);
   const std::string out = c.out.path.empty() ? "" : check_output({c.out.path, OutputKind::trace, c.out.force, {}});
   if (!c.poses.empty()) (void)check_output({c.poses, OutputKind::text, c.out.force, kPoseHeader});
   vrpn::Client client(vrpn::parse_remote_name(c.remote), !c.no_udp);
   const InterruptScope until_it_is_written;
-  listen_to(client, c, record);
+  const std::string ended = listen_to(client, c, heard);
 
-  const std::size_t reports = record.trace().rows();
-  if (reports == 0 && was_interrupted()) return interrupted_exit_code();
-  if (reports == 0)
-    fail(ErrorKind::input, "{}: no report with {} channels came ({} others did); is it the analog device?", c.remote,
-         wii::kChannelsMin, record.left_out());
-  if (!out.empty()) write_trace(out, record.trace());
+  if (heard.reports() == 0 && was_interrupted()) return interrupted_exit_code();
+  check_heard(c, heard);
+  const Trace& trace = heard.channels.trace();
+  if (!out.empty()) write_trace(out, trace);
   if (!c.poses.empty())
-    write_text(c.poses, poses_of(wii_recording_of(c.remote, record.trace()), c.tracker), c.out.force);
+    write_text(c.poses,
+               trace.rows() > 0 ? poses_of(wii_recording_of(c.remote, trace), c.tracker) : poses_of(heard.poses),
+               c.out.force);
   if (c.json) {
-    const nlohmann::ordered_json j = {
-        {"reports", reports}, {"left_out", record.left_out()}, {"interrupted", was_interrupted()}};
+    const nlohmann::ordered_json j = {{"reports", heard.reports()},
+                                      {"left_out", heard.count_left_out()},
+                                      {"left_out_because", heard.left_out()},
+                                      {"ended", ended},
+                                      {"interrupted", was_interrupted()}};
     std::printf("%s\n", json_text(j).c_str());
   } else {
-    std::printf("took %zu reports; %llu could not be kept\n", reports,
-                static_cast<unsigned long long>(record.left_out()));
+    std::printf("took %zu %s; ended: %s\n", heard.reports(), trace.rows() > 0 ? "reports" : "poses", ended.c_str());
+    if (heard.count_left_out() > 0) std::printf("left out %s\n", heard.left_out().c_str());
   }
   return was_interrupted() ? interrupted_exit_code() : 0;
 }
@@ -143,12 +195,17 @@ int listen(const ListenCommand& c) {
 }  // namespace
 
 void add_wii_listen(CLI::App& wii_command, int& exit_code) {
-  auto* command = wii_command.add_subcommand("listen", "Takes channels from a VRPN server: a trace, poses, or both");
+  auto* command =
+      wii_command.add_subcommand("listen", "Takes channels or poses from a VRPN server: a trace, poses, or both");
   auto o = std::make_shared<ListenCommand>();
-  command->add_option("DEVICE", o->remote, "WiiMote0@HOST, WiiMote0@HOST:PORT, or WiiMote0@tcp://HOST:PORT")
+  command
+      ->add_option("DEVICE", o->remote,
+                   "WiiMote0@HOST, WiiMote0@HOST:PORT, WiiMote0@tcp://HOST:PORT, or a tracker likewise")
       ->required();
   add_out_options(*command, o->out, "Wii trace to write, .csv or .h5; only a trace is replaced");
-  command->add_option("--poses", o->poses, "CSV of a tracker's poses, as wii track writes it");
+  command->add_option(
+      "--poses", o->poses,
+      "CSV of poses, as wii track writes it: a tracker's of --tracker from channels, or those that come");
   command->add_option("--tracker", o->tracker, "Which tracker")->check(CLI::IsMember(trackers_of(1)));
   command->add_option("--leds", o->leds, "LEDs of the glasses, as in a trace: 'x y z; x y z'");
   command->add_option("--fov", o->fov, "Field of view of that remote, degrees")->expected(2);

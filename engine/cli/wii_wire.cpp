@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
@@ -45,6 +46,7 @@ class OtherSide {
 
   std::vector<wii::Report> play(const std::vector<wii::SensedReport>& samples) {
     begin_ = wire_time();
+    poses_.begin(begin_);
     playing_ = true;
     const double shift = samples.front().t;
     const StopWatch watch;
@@ -55,9 +57,10 @@ class OtherSide {
       turn(0);
     }
     wait_until(watch, samples.back().t - shift + kLinger);
-    for (wii::Report& r : reports_) r.t += shift;
     say_what_was_left_out();
-    return std::move(reports_);
+    std::vector<wii::Report> reports = poses_.reports();
+    for (wii::Report& r : reports) r.t += shift;
+    return reports;
   }
 
  private:
@@ -74,34 +77,11 @@ class OtherSide {
   }
 
   void take(const vrpn::Received& message) {
-    if (!playing_ || message.type != vrpn::kPose) return;
-    const auto pose = vrpn::decode_pose(message.payload);
-    if (!pose || pose->sensor != 0) {
-      ++of_others_;
-      return;
-    }
-    wii::Report r;
-    r.t = static_cast<double>(microseconds_between(begin_, message.time)) * 1e-6;
-    r.valid = r.news = true;
-    const auto& [p, q] = pose->placement;
-    r.pose = {{p[0], p[1], p[2]}, Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
-    r.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
-    const bool finite = r.pose.position.allFinite() && r.pose.rotation.coeffs().allFinite();
-    if (!finite)
-      ++not_finite_;
-    else if (!reports_.empty() && r.t < reports_.back().t)
-      ++overtaken_;
-    else if (!reports_.empty() && r.t == reports_.back().t)
-      reports_.back() = r;
-    else
-      reports_.push_back(r);
+    if (playing_) poses_.take(message);
   }
 
   void say_what_was_left_out() const {
-    if (of_others_ + not_finite_ + overtaken_ > 0)
-      std::fprintf(stderr,
-                   "%s: left out %d poses of other sensors or malformed, %d not finite, %d overtaken by later ones\n",
-                   name_.c_str(), of_others_, not_finite_, overtaken_);
+    if (!poses_.left_out().empty()) std::fprintf(stderr, "%s: left out %s\n", name_.c_str(), poses_.left_out().c_str());
     if (!client_.connected()) std::fprintf(stderr, "%s: left before the end\n", name_.c_str());
   }
 
@@ -111,11 +91,44 @@ class OtherSide {
   vrpn::Client client_;
   bool playing_ = false;  ///< what the tracker says before is of something else
   vrpn::Timestamp begin_;
-  std::vector<wii::Report> reports_;
-  int of_others_ = 0, not_finite_ = 0, overtaken_ = 0;
+  HeardPoses poses_;
 };
 
 }  // namespace
+
+void HeardPoses::take(const vrpn::Received& message) {
+  if (message.type != vrpn::kPose) return;
+  const auto pose = vrpn::decode_pose(message.payload);
+  if (!pose || pose->sensor != 0) {
+    ++of_others_;
+    return;
+  }
+  const auto& [p, q] = pose->placement;
+  wii::Report r;
+  r.pose = {{p[0], p[1], p[2]}, Quaterniond(q[3], q[0], q[1], q[2]).normalized()};
+  if (!r.pose.position.allFinite() || !r.pose.rotation.coeffs().allFinite()) {
+    ++not_finite_;
+    return;
+  }
+  if (!begin_) begin_ = message.time;
+  r.t = static_cast<double>(microseconds_between(*begin_, message.time)) * 1e-6;
+  r.valid = r.news = true;
+  r.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (!reports_.empty() && r.t < reports_.back().t) {
+    ++overtaken_;
+    return;
+  }
+  if (!reports_.empty() && r.t == reports_.back().t)
+    reports_.back() = r;
+  else
+    reports_.push_back(r);
+}
+
+std::string HeardPoses::left_out() const {
+  if (count_left_out() == 0) return "";
+  return fmt::format("{} poses of other sensors or malformed, {} not finite, {} overtaken by later ones", of_others_,
+                     not_finite_, overtaken_);
+}
 
 void WireOptions::add(CLI::App& command) {
   command.add_option("--channels", analog, "Name of the analog device that the other side reads")->group("Wire");

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/vrpn/message.hpp"
+#include "engine/vrpn/connection.hpp"
 #include "engine/vrpn/socket.hpp"
 #include "engine/wii/tracker.hpp"
 #include "engine/wii/virtual_remote.hpp"
@@ -20,6 +21,22 @@ struct WireOptions {
 
   /// --channels, --serve-host, --serve-port, --no-udp.
   void add(CLI::App& command);
+};
+
+/// A tracker's poses as they come over VRPN: those of sensor 0, their times counted from the begin. VRPN tells no
+/// validity: a pose is valid; nor a covariance: it is NaN. Of poses with equal times the last one counts.
+class HeardPoses {
+ public:
+  void begin(vrpn::Timestamp t) { begin_ = t; }  ///< else the first pose's time
+  void take(const vrpn::Received& message);      ///< anything but poses is passed over
+  [[nodiscard]] const std::vector<wii::Report>& reports() const { return reports_; }
+  [[nodiscard]] int count_left_out() const { return of_others_ + not_finite_ + overtaken_; }
+  [[nodiscard]] std::string left_out() const;  ///< how many, and why; empty if none
+
+ private:
+  std::optional<vrpn::Timestamp> begin_;
+  std::vector<wii::Report> reports_;
+  int of_others_ = 0, not_finite_ = 0, overtaken_ = 0;
 };
 
 /// Serves the samples' channels at their own pace once the other side has connected to them and its tracker answers;

@@ -86,6 +86,7 @@ void Server::accept_all(Timestamp now) {
 }
 
 void Server::add(Socket socket, const Address& address, bool direct, Timestamp now) {
+  if (clients_.size() >= kClientsMax) make_room();
   if (clients_.size() >= kClientsMax) {
     notices_.push_back(fmt::format("{} refused: {} clients are enough", address.text(), kClientsMax));
     return;
@@ -96,6 +97,15 @@ void Server::add(Socket socket, const Address& address, bool direct, Timestamp n
                                                      .direct = direct,
                                                      .since = now.seconds,
                                                      .connection = Connection(names_)}));
+}
+
+/// Whoever came and sent no cookie yet keeps nobody out who may: the one that has waited longest goes.
+void Server::make_room() {
+  const auto silent = std::find_if(clients_.begin(), clients_.end(),
+                                   [](const auto& client) { return !client->connection.established(); });
+  if (silent == clients_.end()) return;
+  notices_.push_back(fmt::format("{} closed: it sent no cookie, and others come", (*silent)->address.text()));
+  clients_.erase(silent);
 }
 
 void Server::read(Client& client, Timestamp now) {

@@ -1,8 +1,9 @@
 // A VRPN server: listens, connects back to clients that ask by UDP, answers pings, and sends reports to all clients.
 //
 // A slow, silent or malformed client never disturbs another: no call waits for a client, each client has its own
-// bounded queue, and each turn reads at most kReadMax bytes from each. An error of a client closes that client only;
-// only the constructor can fail. Not thread-safe; reads no clock. Source: reference/vrpn_wire.
+// bounded queue, each turn reads at most kReadMax bytes from each, and where kClientsMax are connected a newcomer takes
+// the place of one that has not sent its cookie yet. An error of a client closes that client only; only the constructor
+// can fail. Not thread-safe; reads no clock. Source: reference/vrpn_wire.
 #pragma once
 
 #include <memory>
@@ -69,6 +70,7 @@ class Server {
   void take_requests(Timestamp now);
   void accept_all(Timestamp now);
   void add(Socket socket, const Address& address, bool direct, Timestamp now);
+  void make_room();
   void read(Client& client, Timestamp now);
   void take(Client& client, Timestamp now, const Received& message);
   void write(Client& client);

@@ -139,6 +139,29 @@ class ServeThenListen(WireTest):
         self.assertGreater(report["reports"], 40)
         self.end(server)
 
+    def test_a_trackers_poses_are_taken_as_they_come(self):
+        server, port = self.serve_trace("--wait")
+        report = self.run_json("wii", "listen", f"Tracker0@tcp://127.0.0.1:{port}", "--poses", self.path("heard.csv"))
+        self.end(server)
+        self.assertEqual(report["reports"], 60)
+        self.assertIn("the server left", report["ended"])
+        self.succeed("wii", "track", "head.csv", "-o", self.path("tracked.csv"))
+        heard, tracked = read_csv(self.path("heard.csv")), read_csv(self.path("tracked.csv"))
+        self.assertEqual(heard[0], tracked[0])
+        for a, b in zip(heard[1:], tracked[1:]):
+            for x, y in zip(a[:9], b[:9]):
+                self.assertAlmostEqual(float(x), float(y), places=9)
+        server, port = self.serve_trace("--wait")
+        self.refuse(3, "no channels", "wii", "listen", f"Tracker0@tcp://127.0.0.1:{port}", "-o", self.path("t.csv"))
+        self.end(server)
+
+    def test_says_why_it_ended_and_what_it_left_out(self):
+        server, port = self.serve("--trajectory", "natural", "--wait")
+        out = self.succeed("wii", "listen", f"WiiMote0@tcp://127.0.0.1:{port}", "-o", self.path("a.csv"), "--duration", "0.5").stdout
+        self.assertRegex(out, r"took \d+ reports; ended: 0.5 s are over")
+        server.send_signal(signal.SIGTERM)
+        self.end(server, 143)
+
     def test_ctrl_c_ends_both_cleanly(self):
         server, port = self.serve("--trajectory", "natural", "--wait")
         listener = subprocess.Popen([VERISIM, "wii", "listen", f"WiiMote0@127.0.0.1:{port}", "-o", self.path("got.csv")],
@@ -155,6 +178,20 @@ class ServeThenListen(WireTest):
 
 
 class Server(WireTest):
+    def test_silent_clients_keep_nobody_out(self):
+        server, port = self.serve_trace("--wait", rows=20)
+        silent = [socket.create_connection(("127.0.0.1", port)) for _ in range(400)]
+        begin = time.monotonic()
+        peer = Peer(socket.create_connection(("127.0.0.1", port)))
+        peer.sock.sendall(COOKIE)
+        heard = [m for m in peer.messages() if m[1] == "vrpn_Analog Channel"]
+        self.assertEqual(len(heard), 20)
+        self.assertLess(time.monotonic() - begin, 8, "they may be silent for 10 s")
+        for s in [peer.sock, *silent]:
+            s.close()
+        _, err = self.end(server)
+        self.assertIn("sent no cookie, and others come", err)
+
     def test_a_peer_that_sends_nothing_but_its_cookie_receives_every_report(self):
         server, port = self.serve_trace("--wait", rows=20)
         peer = Peer(socket.create_connection(("127.0.0.1", port)))
@@ -301,7 +338,8 @@ class Listener(WireTest):
         stream += self.analog(good[:14], 3000) + self.analog(good[:15], 11000) + self.analog(good, 21000, sender=8)
         process = self.listen(stream)
         out, _ = self.end(process)
-        self.assertIn("took 2 reports; 4 could not be kept", out)
+        self.assertIn("took 2 reports; ended: the server left", out)
+        self.assertIn("left out 1 reports with fewer than 15 channels, 1 not finite, 2 not later than the one before", out)
         rows = read_csv(self.path("got.csv"))[1:]
         self.assertEqual([float(r[0]) for r in rows], [0, 0.01])
         self.assertEqual(float(rows[1][16]), -1, "15 channels leave slot 3 without its size")
