@@ -96,7 +96,9 @@ PairFollower::Match PairFollower::continue_pair(double age, const Reading& readi
     const Blob& blob = reading.blobs[static_cast<std::size_t>(b)];
     const double moved = distance_square(blob, last_[led]);
     const bool another = std::abs(blob.size - last_[led].size) > thresholds_.size_spread;
-    return moved > gate_square || another || is_clutter(blob, moved) ? std::numeric_limits<double>::infinity() : moved;
+    return moved > gate_square || another || clutter_.distance_square(blob) < moved
+               ? std::numeric_limits<double>::infinity()
+               : moved;
   };
   std::array<int, 2> best = {-1, -1};
   double best_cost = std::numeric_limits<double>::infinity();

@@ -49,10 +49,6 @@ class PairFollower {
   /// cost clearly less: an LED whose place a lamp took while it was dark is back. Nothing is computed for images with
   /// fewer than three blobs.
   [[nodiscard]] Match reconsidered(const Reading& reading, const Match& current, const Matrix3d& C_LR);
-  /// Whether a blob is nearer to clutter in the image that was followed last than to an LED's place [pixel^2].
-  [[nodiscard]] bool is_clutter(const Blob& blob, double distance_square_to_led) const {
-    return clutter_.distance_square(blob) < distance_square_to_led;
-  }
   /// Follow these two from now on; all other blobs of this image are clutter.
   /// @pre t is finite; the match's blobs are two of the reading's
   void follow(double t, const Reading& reading, const Match& match);

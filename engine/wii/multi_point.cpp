@@ -24,7 +24,9 @@ class MultiPoint final : public TrackerBase {
         followers_{PairFollower(settings.leds, pinhole(), settings.thresholds),
                    PairFollower(settings.leds, pinhole(), settings.thresholds)},
         half_turn_(settings.thresholds),
-        clutter_{Clutter(settings.thresholds), Clutter(settings.thresholds)} {}
+        clutter_{Clutter(settings.thresholds), Clutter(settings.thresholds)} {
+    for (Assignment& blobs : assigned_) blobs.fill(-1);
+  }
 
   [[nodiscard]] std::string_view name() const override { return name_; }
 
@@ -38,7 +40,7 @@ class MultiPoint final : public TrackerBase {
     if (remote >= remotes_) return;
     views_[static_cast<std::size_t>(remote)] = {reading, t};
     if (!reports(t, remote) || !gravity(0).known()) return;
-    upright_ = prior();
+    upright_ = upright();
     found_ = {};
     reacquired_ = false;
     if (followed_ &&
@@ -69,16 +71,7 @@ class MultiPoint final : public TrackerBase {
     return t - views_[0].t > settings().thresholds.both_silent;
   }
 
-  /// Yaw and pitch are near zero …
-  [[nodiscard]] Upright prior() const {
-    Upright u;
-    u.C_LR = gravity(0).C_LR();
-    u.sigma_x = settings().thresholds.prior_width * settings().yaw_sigma;
-    u.sigma_y = settings().thresholds.prior_width * settings().pitch_sigma;
-    u.sigma_roll = settings().thresholds.roll_sigma;
-    return u;
-  }
-  /// … or, when they were seen a moment ago and now are not, near what they were.
+  /// When yaw and pitch were seen a moment ago and now are not, they are near what they were.
   void take_last_as_prior(double t, Upright& u) const {
     const Matrix3d R_LH = u.C_LR * X_RH_.rotation.toRotationMatrix();
     const double drift = settings().thresholds.turn_rate * std::abs(t - t_full_);

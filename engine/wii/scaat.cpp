@@ -91,7 +91,7 @@ class Scaat final : public TrackerBase {
       if (led < 2) pair_.blob[led] = blobs[led];
     }
     if (seen == 1) correct_size(reading.blobs[static_cast<std::size_t>(last)]);
-    if (seen >= 2) learn_size(reading.blobs[static_cast<std::size_t>(last)]);
+    if (seen == settings().leds.count) learn_size(size_, reading, settings(), assigned_, filter_.X_RH());
     correct_upright(C_LR, dt);
     return seen;
   }
@@ -105,7 +105,7 @@ class Scaat final : public TrackerBase {
       if (blobs[led] < 0) continue;
       const Blob& blob = reading.blobs[static_cast<std::size_t>(blobs[led])];
       const double off = (Eigen::Vector2d(blob.u, blob.v) - expected[led]).squaredNorm();
-      if (leds == 2 ? follower_.is_clutter(blob, off) : clutter_.distance_square(blob) < off) blobs[led] = -1;
+      if (clutter_.distance_square(blob) < off) blobs[led] = -1;
     }
     return blobs;
   }
@@ -142,15 +142,13 @@ class Scaat final : public TrackerBase {
 
   /// A blob's size falls with distance: coarse, but all that one LED says of depth.
   void correct_size(const Blob& blob) {
+    if (!(size_.at_1m > 0)) return;
     const Vector3d& p = filter_.X_RH().position;
     const double distance = p.norm();
-    const double size = size_at_1m_ / distance;
+    const double size = size_.at_1m / distance;
     const Thresholds& n = settings().thresholds;
     filter_.correct(-size / (distance * distance) * p, Vector3d::Zero(), blob.size - size,
                     n.size_sigma * n.size_sigma * n.size_repeats, n.gate_sigmas);
-  }
-  void learn_size(const Blob& blob) {
-    size_at_1m_ += settings().thresholds.size_learning * (blob.size * filter_.X_RH().position.norm() - size_at_1m_);
   }
 
   /// Entries (2,0) and (2,1) of R_LH are -yaw and pitch. Two LEDs see neither: both are held at zero and accounted for
@@ -188,6 +186,7 @@ class Scaat final : public TrackerBase {
     if (!other.found()) return;
     pair_ = other;
     start_from(other.pose, C_LR);
+    assigned_ = {other.blob[0], other.blob[1], -1, -1};
     doubt_ = 1 - doubt_;
   }
 
@@ -213,17 +212,15 @@ class Scaat final : public TrackerBase {
   int acquire(double t, const Reading& reading, const Matrix3d& C_LR) {
     if (settings().leds.count == 2) {
       pair_ = follower_.match(t, reading, C_LR);
-      if (pair_.found()) start_from(pair_.pose, C_LR);
-      return pair_.found() ? 2 : 0;
+      if (!pair_.found()) return 0;
+      start_from(pair_.pose, C_LR);
+      assigned_ = {pair_.blob[0], pair_.blob[1], -1, -1};
+      return 2;
     }
-    Upright upright;
-    upright.C_LR = C_LR;
-    upright.sigma_x = settings().thresholds.prior_width * settings().yaw_sigma;
-    upright.sigma_y = settings().thresholds.prior_width * settings().pitch_sigma;
-    upright.sigma_roll = settings().thresholds.roll_sigma;
+    const Upright prior = upright();
     const Reading seen = clutter_.removed_from(reading);
-    Acquired acquired = acquire_head(seen, settings(), pinhole(), solver_, upright, size_);
-    if (!acquired.solved.found) acquired = acquire_head_from_two(seen, settings(), pinhole(), solver_, upright, size_);
+    Acquired acquired = acquire_head(seen, settings(), pinhole(), solver_, prior, size_);
+    if (!acquired.solved.found) acquired = acquire_head_from_two(seen, settings(), pinhole(), solver_, prior, size_);
     if (found_from_two_ && !acquired.solved.found) running_ = false;
     found_from_two_ = false;
     if (!acquired.solved.found) return 0;
@@ -263,17 +260,12 @@ class Scaat final : public TrackerBase {
 
   /// Remembers where the LEDs were and what else was in the image: clutter, should the head be lost.
   void admitted(double t, bool valid) override {
-    const auto leds = static_cast<std::size_t>(settings().leds.count);
-    if (leds > 2) {
-      const auto all = std::span(assigned_).first(leds);
-      if (valid && std::find(all.begin(), all.end(), -1) == all.end()) {
-        clutter_.learn(reading_, all);
-        wii::learn_size(size_, reading_, settings(), assigned_, filter_.X_RH());
-      } else
-        clutter_.follow(reading_);
-      return;
-    }
-    if (!valid || pair_.blob[0] < 0 || pair_.blob[1] < 0) return;
+    const auto leds = std::span(assigned_).first(static_cast<std::size_t>(settings().leds.count));
+    if (valid && std::find(leds.begin(), leds.end(), -1) == leds.end())
+      clutter_.learn(reading_, leds);
+    else
+      clutter_.follow(reading_);
+    if (leds.size() > 2 || !valid || pair_.blob[0] < 0 || pair_.blob[1] < 0) return;
     pair_.pose.p_L = filter_.X_RH().position;  // only how far it is counts
     follower_.follow(t, reading_, pair_);
     const Eigen::Vector2d roll = roll_of(gravity(0).C_LR() * filter_.R_RH().col(0));
@@ -286,12 +278,14 @@ class Scaat final : public TrackerBase {
     found_from_two_ = false;
     size_ = {};
     half_turn_.forget();
+    last_blob_ = {};
+    repetition_ = 1;
   }
 
   PoseSolver solver_;
-  PairFollower follower_;        ///< acquires a pair and knows its clutter; the filter itself follows the LEDs
-  Clutter clutter_;              ///< of three LEDs or more
-  LedSize size_;                 ///< likewise
+  PairFollower follower_;  ///< acquires a pair; the filter itself follows the LEDs
+  Clutter clutter_;
+  LedSize size_;
   bool found_from_two_ = false;  ///< of three LEDs, whose yaw a pair must not seem to show: found anew in every report
   HalfTurn half_turn_;
   double doubt_ = 0;  ///< that the pair is the other way round
@@ -305,9 +299,8 @@ class Scaat final : public TrackerBase {
   HeadFilter::View view_ = HeadFilter::View::all;  ///< of the last report
   bool lost_ = false;                              ///< the head must be acquired anew
   int unassigned_ = 0;                             ///< reports in a row with missing LEDs and unassigned blobs
-  double size_at_1m_ = 4;
-  std::array<Blob, kLedsMax> last_blob_{};  ///< of each LED
-  double repetition_ = 1;                   ///< share of coordinates that are as they were in the report before
+  std::array<Blob, kLedsMax> last_blob_{};         ///< of each LED
+  double repetition_ = 1;                          ///< share of coordinates that are as they were in the report before
 };
 
 }  // namespace

@@ -57,6 +57,15 @@ const Report& TrackerBase::update(double t, std::span<const double> channels, in
   return report_;
 }
 
+Upright TrackerBase::upright() const {
+  Upright u;
+  u.C_LR = gravity(0).C_LR();
+  u.sigma_x = settings_.thresholds.prior_width * settings_.yaw_sigma;
+  u.sigma_y = settings_.thresholds.prior_width * settings_.pitch_sigma;
+  u.sigma_roll = settings_.thresholds.roll_sigma;
+  return u;
+}
+
 bool TrackerBase::turned_too_fast(double dt, Estimate& result) const {
   const Thresholds& n = settings_.thresholds;
   const double limit = kWithin * n.spin_max * std::abs(dt);

@@ -4,6 +4,7 @@
 
 #include "engine/wii/admission.hpp"
 #include "engine/wii/gravity.hpp"
+#include "engine/wii/pose_solver.hpp"
 #include "engine/wii/tracker.hpp"
 
 namespace verisim::wii {
@@ -40,6 +41,9 @@ class TrackerBase : public Tracker {
   [[nodiscard]] const TrackerSettings& settings() const { return settings_; }
   [[nodiscard]] const Pinhole& pinhole() const { return pinhole_; }
   [[nodiscard]] const GravityFilter& gravity(int remote) const { return gravity_[static_cast<std::size_t>(remote)]; }
+  /// The prior of a pose that is sought: yaw and pitch are near zero, give or take twice what heads turn, so that it
+  /// hardly counts where they are seen.
+  [[nodiscard]] Upright upright() const;
   /// Of the first remote's levelling [rad^2]: constant errors and scattered readings.
   [[nodiscard]] double tilt_variance() const {
     return settings_.gravity_sigma * settings_.gravity_sigma + gravity_[0].tilt_variance();

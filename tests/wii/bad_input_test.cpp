@@ -6,7 +6,9 @@
 #include <cstdlib>
 
 #include "engine/base/random.hpp"
+#include "engine/wii/sensed_run.hpp"
 #include "engine/wii/tracker.hpp"
+#include "engine/wii/validate.hpp"
 #include "tests/length.hpp"
 
 namespace verisim::wii::bad_input_test {
@@ -28,10 +30,10 @@ const TrackerEntry& entry_of(const std::string& name) {
 bool has_three_leds(const std::string& name) {
   return name.ends_with("/3") || entry_of(name).leds.count == 3;
 }
-std::unique_ptr<Tracker> make(const std::string& name) {
+std::unique_ptr<Tracker> make(const std::string& name, const Pose& X_R1R2 = {}) {
   TrackerSettings settings;
   if (has_three_leds(name)) settings.leds = LedLayout::triangle();
-  if (entry_of(name).remotes == 2) settings.X_R1R2 = Pose();
+  if (entry_of(name).remotes == 2) settings.X_R1R2 = X_R1R2;
   return make_tracker(entry_of(name).name, settings);
 }
 
@@ -120,6 +122,47 @@ TEST_P(BadInput, TimeThatGoesFarBackIsANewRecording) {
   const Report& report = tracker_->update(0, good());
   EXPECT_TRUE(report.valid);
   EXPECT_TRUE(report.reacquired);
+}
+
+// Not a trace of the recording before is left: reports are those of a tracker that never saw it, to the bit.
+TEST_P(BadInput, ANewRecordingIsTrackedAsByANewTracker) {
+  const std::string name = GetParam();
+  const auto run = [&](Tracker& tracker, const char* path, const char* sensor, double shift) {
+    const LedLayout leds = has_three_leds(name) ? LedLayout::triangle() : LedLayout();
+    const RemoteSettings remote = remote_settings(sensor_case(sensor).settings, trajectory(path), leds, {});
+    std::vector<Report> reports;
+    for (const Sensed& s : sense_run(remote, trajectory(path), entry_of(name).remotes, 1, 0))
+      reports.push_back(tracker.update(s.report.t + shift, s.report.channels, s.remote));
+    return reports;
+  };
+  const std::unique_ptr<Tracker> fresh = make(name, second_remote());
+  const std::vector<Report> first = run(*fresh, "edges", "wiimote", 0);
+  for (const char* before : {"edges", "natural-yaw", "dropout-one", "moving-remote"}) {
+    const std::unique_ptr<Tracker> used = make(name, second_remote());
+    (void)run(*used, before, "lamp", 1000);
+    const std::vector<Report> again = run(*used, "edges", "wiimote", 0);
+    ASSERT_EQ(again.size(), first.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      SCOPED_TRACE(testing::Message() << before << ", report " << i);
+      ASSERT_EQ(again[i].valid, first[i].valid);
+      if (!first[i].valid) continue;
+      ASSERT_EQ(again[i].pose.position, first[i].pose.position);
+      ASSERT_EQ(again[i].pose.rotation.coeffs(), first[i].pose.rotation.coeffs());
+      ASSERT_EQ(again[i].covariance, first[i].covariance);
+    }
+  }
+}
+
+// Times that grow by next to nothing, or by ages.
+TEST_P(BadInput, StepsOfTimeOfAnySizeAreSurvived) {
+  for (const double step : {1e-300, 1e-12, 1e-3, 1e9, 1e300}) {
+    const std::unique_ptr<Tracker> tracker = make(GetParam());
+    for (int i = 1; i <= 2000; ++i) {
+      const Report& report = tracker->update(step * i, good());
+      ASSERT_TRUE(report.valid) << step << ", " << i;
+      ASSERT_TRUE(report.pose.position.allFinite() && report.covariance.allFinite()) << step << ", " << i;
+    }
+  }
 }
 
 TEST_P(BadInput, AThousandReportsInAMillisecondMoveNothing) {

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
         Number{"velocity_gain", &Thresholds::velocity_gain, "stereo", "swap", "wiimote", 1.3},
         Number{"pair_speed", &Thresholds::pair_speed, "scaat", "dropout-one", "lamp", 1.2},
         Number{"lost_head_memory", &Thresholds::lost_head_memory, "stereo", "dropout-one", "wiimote", 1.01},
-        Number{"size_learning", &Thresholds::size_learning, "scaat", "dropout-one", "wiimote", 1.02},
+        Number{"size_learning", &Thresholds::size_learning, "scaat", "dropout-one", "wiimote", 1.03},
         Number{"size_sigma", &Thresholds::size_sigma, "scaat", "dropout-one", "wiimote", 1.43},
         Number{"size_repeats", &Thresholds::size_repeats, "scaat", "dropout-one", "wiimote", 1.15},
         Number{"confirmations", &Thresholds::confirmations, "scaat", "dropout-one", "lamp", 1.07},
