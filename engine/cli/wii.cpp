@@ -33,21 +33,27 @@ struct PlaceCommand {
   int count = 1000;
   std::uint64_t samples = 200'000;
   std::uint64_t seed = 1;
-  bool screen_given = false;
   bool json = false;
 };
+
+/// Error(usage) for an option that would be ignored.
+void refuse_idle_options(const CLI::App& command, const PlaceCommand& c) {
+  const auto refuse = [&](std::initializer_list<const char*> names, const char* because) {
+    for (const char* name : names)
+      if (command.count(name) > 0) fail(ErrorKind::usage, "{}: {}; leave it out", name, because);
+  };
+  if (!c.trace.empty())
+    refuse({"--head", "--spread", "--count"}, "is of modelled heads, and --heads gives recorded ones");
+  if (!c.trace.empty() && command.count("--screen") == 0)
+    refuse({"--screen-size"}, "where the screen stands is not known: --heads needs --screen, too");
+  if (!c.at.empty()) refuse({"--room-min", "--room-max"}, "--at gives the place, nothing is looked for");
+}
 
 Vector3d vector_of(const std::vector<double>& v) {
   return {v[0], v[1], v[2]};
 }
 
-Vector3d middle_of(const std::vector<Pose>& heads) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Pose& X_WH : heads) sum += X_WH.position;
-  return heads.empty() ? sum : Vector3d(sum / static_cast<double>(heads.size()));
-}
-
-wii::PlaceOptions place_options(const PlaceCommand& c) {
+wii::PlaceOptions place_options(const PlaceCommand& c, bool with_screen) {
   wii::PlaceOptions options;
   if (!c.trace.empty()) {
     const wii::Recording recording = read_wii_file(c.trace, {.allow_gaps = true});
@@ -64,9 +70,9 @@ wii::PlaceOptions place_options(const PlaceCommand& c) {
     if (!(side >= 0) || !std::isfinite(side))
       fail(ErrorKind::usage, "--screen-size {} {}: must be sides in m; 0 0 for no screen", c.screen_size[0],
            c.screen_size[1]);
-  if (c.screen_size[0] > 0 && c.screen_size[1] > 0 && (c.trace.empty() || c.screen_given))
+  if (c.screen_size[0] > 0 && c.screen_size[1] > 0 && with_screen)
     options.obstacles.push_back(
-        wii::screen_at(vector_of(c.screen), middle_of(options.heads), c.screen_size[0], c.screen_size[1]));
+        wii::screen_at(vector_of(c.screen), wii::middle_of(options.heads), c.screen_size[0], c.screen_size[1]));
   for (const std::vector<double>& box : c.obstacles) {
     const Vector3d low(box[0], box[1], box[2]), high(box[3], box[4], box[5]);
     if (!low.allFinite() || !high.allFinite() || !(low.array() <= high.array()).all())
@@ -133,8 +139,9 @@ void print_places(const wii::PlaceOptions& options, const std::vector<wii::Place
   }
 }
 
-void run_place(const PlaceCommand& c) {
-  const wii::PlaceOptions options = place_options(c);
+void run_place(const CLI::App& command, const PlaceCommand& c) {
+  refuse_idle_options(command, c);
+  const wii::PlaceOptions options = place_options(c, c.trace.empty() || command.count("--screen") > 0);
   const ordered_json coverage = coverage_of(c, options.tracker);
   std::vector<wii::Placement> places;
   if (c.at.empty()) {
@@ -170,8 +177,7 @@ void add_place(CLI::App& wii_command, int& exit_code) {
   auto o = std::make_shared<PlaceCommand>();
   command->add_option("--heads", o->trace, "Wii trace with true poses; else heads are modelled");
   command->add_option("--head", o->head, "Middle of the modelled heads, m (+y up)")->expected(3);
-  auto* screen =
-      command->add_option("--screen", o->screen, "What they face, m; nothing is seen through it")->expected(3);
+  command->add_option("--screen", o->screen, "What they face, m; nothing is seen through it")->expected(3);
   command->add_option("--screen-size", o->screen_size, "Its width and height, m; 0 0: it hides nothing")->expected(2);
   command
       ->add_option("--obstacle", o->obstacles, "Lower and upper corner of a box that hides what is behind (repeatable)")
@@ -192,8 +198,7 @@ void add_place(CLI::App& wii_command, int& exit_code) {
   command->footer(
       "Example: verisim wii place --head 0 1.2 1 --screen 0 1.2 0 --room-min -0.6 0.7 -0.3 --room-max 0.6 1.7 0");
   command->callback([=, &exit_code] {
-    o->screen_given = screen->count() > 0;
-    run_place(*o);
+    run_place(*command, *o);
     exit_code = 0;
   });
 }

@@ -31,6 +31,7 @@ struct ListenCommand {
   std::string leds;
   std::vector<double> fov;
   double rate = 100;
+  std::vector<std::string> of_channels;  ///< given options that poses have no use for
   double duration = std::numeric_limits<double>::infinity();
   double patience = 10;
   bool no_udp = false;
@@ -99,7 +100,10 @@ struct Heard {
   ChannelRecord channels;
   HeardPoses poses;
 
-  [[nodiscard]] std::size_t reports() const { return channels.trace().rows() + poses.reports().size(); }
+  /// Channels, or else poses.
+  [[nodiscard]] std::size_t reports() const {
+    return channels.trace().rows() > 0 ? channels.trace().rows() : poses.reports().size();
+  }
   [[nodiscard]] std::uint64_t count_left_out() const {
     return channels.count_left_out() + static_cast<std::uint64_t>(poses.count_left_out());
   }
@@ -151,8 +155,14 @@ void check_heard(const ListenCommand& c, const Heard& heard) {
     fail(ErrorKind::input, "{}: no report with {} channels came, nor a pose{}; is it the analog device, or a tracker?",
          c.remote, wii::kChannelsMin,
          heard.count_left_out() > 0 ? fmt::format(" (left out {})", heard.left_out()) : "");
+  if (heard.channels.trace().rows() > 0 && !heard.poses.reports().empty())
+    std::fprintf(stderr, "note: %s: sends poses beside the channels; %zu of them are left out\n", c.remote.c_str(),
+                 heard.poses.reports().size());
   if (heard.channels.trace().rows() == 0 && !c.out.path.empty())
     fail(ErrorKind::input, "{}: sends poses and no channels; write them with --poses alone", c.remote);
+  if (heard.channels.trace().rows() == 0 && !c.of_channels.empty())
+    std::fprintf(stderr, "note: %s: sends poses; not used: %s\n", c.remote.c_str(),
+                 fmt::format("{}", fmt::join(c.of_channels, ", ")).c_str());
 }
 
 int listen(const ListenCommand& c) {
@@ -215,7 +225,11 @@ void add_wii_listen(CLI::App& wii_command, int& exit_code) {
   command->add_flag("--no-udp", o->no_udp, "Have reports sent by TCP");
   command->add_flag("--json", o->json, "One JSON object on stdout at the end");
   command->footer("Example: verisim wii listen WiiMote0@localhost -o head.csv --duration 30");
-  command->callback([=, &exit_code] { exit_code = listen(*o); });
+  command->callback([=, &exit_code] {
+    for (const char* name : {"--tracker", "--leds", "--fov", "--rate"})
+      if (command->count(name) > 0) o->of_channels.emplace_back(name);
+    exit_code = listen(*o);
+  });
 }
 
 }  // namespace verisim::cli

@@ -40,10 +40,8 @@ class HeardPoses {
 };
 
 /// Serves the samples' channels at their own pace once the other side has connected to them and its tracker answers;
-/// takes the tracker's poses (sensor 0), their times counted from the begin of the samples. VRPN tells no validity: a
-/// pose is valid. Of poses with equal times the last one counts; how many others were left out, and why, is said on
-/// stderr, like progress. Error(io) if the other side does
-/// not come in time, Error(interrupted).
+/// takes the tracker's poses (HeardPoses), their times counted from the begin of the samples. How many were left out,
+/// and why, is said on stderr, like progress. Error(io) if the other side does not come in time, Error(interrupted).
 [[nodiscard]] std::vector<wii::Report> hear_tracker(const std::string& remote_name, const WireOptions& options,
                                                     double patience_s, const std::vector<wii::SensedReport>& samples);
 

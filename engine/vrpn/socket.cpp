@@ -18,6 +18,9 @@ namespace verisim::vrpn {
 namespace {
 
 constexpr int kBacklog = 128;
+constexpr int kIdle = 10;               // s until a peer that says nothing is asked whether it is there …
+constexpr int kProbeEvery = 5;          // s, and again …
+constexpr int kProbes = 3;              // … before it is taken for gone
 constexpr int kSendBuffer = 64 * 1024;  // small: what a peer does not read must not hide in the kernel for minutes
 
 sockaddr_in native(const Address& address) {
@@ -53,6 +56,11 @@ void set_option(const Socket& socket, int level, int option, int value) {
 void prepare_stream(const Socket& socket) {
   set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   set_option(socket, SOL_SOCKET, SO_SNDBUF, kSendBuffer);
+  // A peer that vanished without a word, and reads datagrams, would be written to for ever.
+  set_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  set_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, kIdle);
+  set_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, kProbeEvery);
+  set_option(socket, IPPROTO_TCP, TCP_KEEPCNT, kProbes);
 }
 
 void bind_to(const Socket& socket, const Address& at, const char* what) {

@@ -49,12 +49,6 @@ void check_place(const PlaceOptions& options) {
 
 namespace {
 
-Vector3d middle_of(const std::vector<Pose>& heads) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Pose& X_WH : heads) sum += X_WH.position;
-  return sum / static_cast<double>(heads.size());
-}
-
 Parameters aimed_at(const Vector3d& p, const Vector3d& target) {
   const Vector3d way = target - p;
   return {p.x(), p.y(), p.z(), pinned::atan2(way.x(), way.z()),
@@ -173,6 +167,13 @@ std::vector<Placement> front_of(std::vector<Placement> all, double equal_coverag
 }
 
 }  // namespace
+
+Vector3d middle_of(const std::vector<Pose>& heads) {
+  VERISIM_ASSERT(!heads.empty());
+  Vector3d sum = Vector3d::Zero();
+  for (const Pose& X_WH : heads) sum += X_WH.position;
+  return sum / static_cast<double>(heads.size());
+}
 
 Obstacle screen_at(const Vector3d& middle, const Vector3d& toward, double width, double height) {
   constexpr double kThick = 0.04;  // m

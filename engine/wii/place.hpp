@@ -26,6 +26,8 @@ struct Obstacle {
   Pose X_WO;                         ///< of its middle
   Vector3d half = Vector3d::Zero();  ///< of its sides [m]
 };
+/// @pre there are heads
+[[nodiscard]] Vector3d middle_of(const std::vector<Pose>& heads);
 /// A flat screen 4 cm thick that faces `toward`. @pre it does not stand right above or below that
 [[nodiscard]] Obstacle screen_at(const Vector3d& middle, const Vector3d& toward, double width, double height);
 

@@ -24,18 +24,19 @@ struct Thresholds {
   /// s. Two LEDs of three cannot tell a turn from coming nearer. A turn that is predicted for too long becomes an error
   /// of depth.
   double pair_decay = 0.08;
-  double slow = 0.1;           ///< s, of the mean velocities that take over from the momentary ones, which are noisier
-  double start_speed = 0.5;    ///< m/s, standard deviation of a head's that was just found: heads at work are slow
-  double start_spin = 1;       ///< rad/s, likewise
-  double spin_max = 15;        ///< rad/s: faster than any head turns
-  double slack_turn = 0.5;     ///< rad that measuring noise may turn a head by beyond that, however unsure it is
+  double slow = 0.1;         ///< s, of the mean velocities that take over from the momentary ones, which are noisier
+  double start_speed = 0.5;  ///< m/s, standard deviation of a head's that was just found: heads at work are slow
+  double start_spin = 1;     ///< rad/s, likewise
+  double spin_max = 15;      ///< rad/s: faster than any head turns
+  double slack_turn =
+      0.5;  ///< rad that measuring noise may turn a head by beyond that, however unsure it is; not measured
   double velocity_gain = 0.5;  ///< share of the newest difference in the velocity of trackers without a filter
 
   // Which blob is which LED (assignment.cpp, acquisition.cpp, multi_point.cpp, scaat.cpp).
-  double clutter_radius = 12;    ///< pixel; lamps stand still, unless the remote is moved
-  double pair_cost_max = 6;      ///< a tilt of 90 degrees costs 4, sizes that differ by two cost 4: both are no head
-  double cost_margin = 2;        ///< tilt and rounded sizes of a true pair cost less
-  double cost_per_led_max = 12;  ///< per LED seen: beyond any pixel noise, so not this head
+  double clutter_radius = 12;  ///< pixel; lamps stand still, unless the remote is moved
+  double pair_cost_max = 6;  ///< a tilt of 90 degrees costs 4, sizes that differ by two cost 8: the latter are no pair
+  double cost_margin = 2;    ///< tilt and rounded sizes of a true pair cost less
+  double cost_per_led_max = 12;         ///< per LED seen: beyond any pixel noise, so not this head
   double acquisition_cost_per_led = 5;  ///< per LED of a head that is found: its shape, and how upright it is
   double gate_sigmas = 5;               ///< of what a measurement was expected to be
   double pixel_gate = 15;               ///< pixel, beside what the state's uncertainty allows
@@ -47,7 +48,7 @@ struct Thresholds {
   double pair_speed = 2000;  ///< pixel per s: 1.5 m/s at 1 m, for gaps of some reports
   double pair_memory = 0.25;          ///< s that a pair is followed for; a head needs longer to roll over
   double lost_head_memory = 0.25;     ///< s that a lost head is looked for where it was
-  double size_scale = 0.7;            ///< blob size units: a true pair differs by no more
+  double size_scale = 0.7;            ///< blob size units, of a pair's difference: 1 costs 2, as rounding makes it
   double size_learning = 0.02;        ///< per report: cells run down slowly, and brightness with them
   double size_cost_max = 2;           ///< sizes of real sensors follow distance badly: a hint, no proof; not measured
   double repetition_learning = 0.02;  ///< per coordinate pair
@@ -79,8 +80,9 @@ struct Thresholds {
   double moving_for = 2;        ///< s, likewise moves
 
   // The prior, and what is sure enough.
-  double sigma_max = 0.15;      ///< m: less sure than this is not valid
-  double slack_sigmas = 4;      ///< of a position, that it may seem to be faster than heads are (admission.hpp)
+  double sigma_max = 0.15;  ///< m: less sure than this is not valid
+  double slack_sigmas =
+      4;  ///< that a head may seem to move or turn faster than heads do (admission.hpp, tracker_base.cpp)
   double coast_max = 0.1;       ///< s without any LED that a prediction still counts as valid
   double forget_after = 1;      ///< s without any LED after which nothing is predicted any more
   double pinned = 1 * kDegree;  ///< rad: with two LEDs, yaw and pitch are held at zero to this, not estimated

@@ -142,6 +142,13 @@ class Place(ProgramTest):
         self.refuse(2, "lower", *words, "--obstacle", "1", "1", "1", "0", "0", "0")
         self.refuse(2, "--at", *words, "--at", "0", "0.9", "nan", "0", "15")
 
+    def test_no_option_is_ignored(self):
+        self.succeed("trace", "synth", "wii", "--trajectory", "static", "-o", self.path("heads.csv"))
+        for option in ["--head", "0", "0", "1"], ["--spread", "0", "0", "1"], ["--count", "3"], ["--screen-size", "1", "1"]:
+            self.refuse(2, option[0], "wii", "place", "--heads", self.path("heads.csv"), *option)
+        for option in ["--room-min", "0", "0", "0"], ["--room-max", "0", "0", "0"]:
+            self.refuse(2, option[0], "wii", "place", "--at", "0", "0", "0", "0", "0", *option)
+
     def test_places_are_a_list_by_coverage_and_error(self):
         words = ["wii", "place", "--head", "0", "1.2", "1", "--screen", "0", "1.2", "0", "--room-min", "-0.6", "0.7", "-0.3",
                  "--room-max", "0.6", "1.7", "0", "--count", "200", "--samples", "1000"]

@@ -145,6 +145,10 @@ class ServeThenListen(WireTest):
         self.end(server)
         self.assertEqual(report["reports"], 60)
         self.assertIn("the server left", report["ended"])
+        server2, port2 = self.serve_trace("--wait")
+        note = self.succeed("wii", "listen", f"Tracker0@tcp://127.0.0.1:{port2}", "--poses", self.path("again.csv"), "--rate", "50")
+        self.end(server2)
+        self.assertIn("not used: --rate", note.stderr)
         self.succeed("wii", "track", "head.csv", "-o", self.path("tracked.csv"))
         heard, tracked = read_csv(self.path("heard.csv")), read_csv(self.path("tracked.csv"))
         self.assertEqual(heard[0], tracked[0])
@@ -191,6 +195,22 @@ class Server(WireTest):
             s.close()
         _, err = self.end(server)
         self.assertIn("sent no cookie, and others come", err)
+
+    def test_a_peer_that_vanishes_is_asked_for(self):
+        server, port = self.serve("--trajectory", "static", "--wait")
+        peer = Peer(socket.create_connection(("127.0.0.1", port)))
+        def timers():
+            with open("/proc/net/tcp") as table:
+                rows = [line.split() for line in table.readlines()[1:]]
+            return {r[5][:2] for r in rows if r[1].endswith(f":{port:04X}") and r[3] == "01"}
+
+        deadline = time.monotonic() + 10
+        while timers() != {"02"} and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(timers(), {"02"}, "the timer of an idle connection is the one that asks")
+        peer.sock.close()
+        server.send_signal(signal.SIGTERM)
+        self.end(server, 143)
 
     def test_a_peer_that_sends_nothing_but_its_cookie_receives_every_report(self):
         server, port = self.serve_trace("--wait", rows=20)

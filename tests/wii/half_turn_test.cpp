@@ -45,11 +45,13 @@ struct Turns {
   int wrong = 0;              ///< valid reports that are half a turn off
   int valid = 0;
 };
-Turns turns_of(std::string_view tracker, const Trajectory& path, const SensorCase& sensor, std::uint64_t seed) {
+Turns turns_of(std::string_view tracker, const Trajectory& path, const SensorCase& sensor, std::uint64_t seed,
+               const Thresholds& thresholds = {}) {
   const bool triangle = tracker.ends_with("/3");
   if (triangle) tracker.remove_suffix(2);
   const TrackerEntry& entry = find_tracker(tracker);
   TrackerSettings settings;
+  settings.thresholds = thresholds;
   settings.leds = triangle ? LedLayout::triangle() : entry.leds;
   if (entry.remotes == 2) settings.X_R1R2 = second_remote();
   const RemoteSettings remote = remote_settings(sensor.settings, path, settings.leds, {});
@@ -93,6 +95,39 @@ TEST_P(OfPairs, HeadsThatRollFarAreFollowedOrInDoubt) {
       EXPECT_LE(turns.worst_sigmas, 6);
       if (rolled.dark > 0.5) continue;
       EXPECT_EQ(turns.wrong, 0);
+    }
+}
+
+/// A number of which no formula tells the value: halved and doubled, what is promised still holds.
+struct Number {
+  const char* name;
+  double Thresholds::*member;
+};
+class WiiHalfTurn : public ::testing::TestWithParam<Number> {};
+INSTANTIATE_TEST_SUITE_P(
+    HalfAndDouble, WiiHalfTurn,
+    ::testing::Values(Number{"roll_sigma", &Thresholds::roll_sigma}, Number{"lying", &Thresholds::lying},
+                      Number{"roll_speed", &Thresholds::roll_speed}, Number{"roll_noise", &Thresholds::roll_noise},
+                      Number{"seen_gap", &Thresholds::seen_gap}, Number{"posture_kept", &Thresholds::posture_kept},
+                      Number{"posture_time", &Thresholds::posture_time}),
+    [](const auto& number) { return std::string(number.param.name); });
+
+TEST_P(WiiHalfTurn, HardlyHangsOnIt) {
+  const int seeds = test::by_length(5, 40, 1000);
+  for (const double factor : {0.5, 2.0})
+    for (int i = 0; i < seeds; ++i) {
+      const auto seed = static_cast<std::uint64_t>(i);
+      const Rolled rolled(seed);
+      Thresholds thresholds;
+      thresholds.*GetParam().member *= factor;
+      const Turns turns = turns_of("geometric", rolled.path, sensor_case("wiimote"), seed, thresholds);
+      SCOPED_TRACE(fmt::format("x {}, seed {}: roll {:.0f} deg, LED {} dark for {:.2f} s", factor, i,
+                               rolled.roll / kDegree, rolled.led, rolled.dark));
+      EXPECT_LE(turns.fastest_untold, 15);
+      EXPECT_LE(turns.worst_sigmas, 6);
+      if (rolled.dark <= 0.5) {
+        EXPECT_EQ(turns.wrong, 0);
+      }
     }
 }
 

@@ -102,9 +102,8 @@ TEST(Numbers, AnAccelerometersNoiseIsAveraged) {
   EXPECT_LE(mean_row("geometric", "tilted", "8-bit", options).position.rms, 0.0041);
 }
 
-// Over start poses that turn the head as far as trackers assume, errors are what the covariance says: 0.3 to 1.3 of it
-// per degree of freedom of the orientation. `ideal` has less noise than trackers assume, so its errors may be smaller;
-// the position's may be a tenth of it, where half a pixel and a rounded one are the same.
+// Over start poses that turn the head as far as trackers assume, errors of the orientation are 0.3 to 1.3 of what the
+// covariance says, per degree of freedom. `ideal` has less noise than trackers assume: there they may be smaller.
 TEST(Numbers, OrientationsAreAsFarOffAsTheySay) {
   ValidationOptions options;
   options.seeds = 20;

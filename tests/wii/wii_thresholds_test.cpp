@@ -79,6 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
         Number{"resting_for", &Thresholds::resting_for, "stereo", "edges", "accelerometer", 1.06},
         Number{"moving_for", &Thresholds::moving_for, "stereo", "moving-remote", "accelerometer", 1.05},
         Number{"lone_blob_memory", &Thresholds::lone_blob_memory, "stereo", "natural-yaw", "wiimote", 1.05},
+        Number{"repetition_learning", &Thresholds::repetition_learning, "scaat", "grid", "wiimote", 1.01},
         Number{"slack_sigmas", &Thresholds::slack_sigmas, "scaat/3", "grid", "wiimote", 1.05},
         Number{"pixel_gate_max", &Thresholds::pixel_gate_max, "scaat", "edges", "lamp", 1.1},
         Number{"pinned", &Thresholds::pinned, "scaat", "swap", "wiimote", 1.01}),
