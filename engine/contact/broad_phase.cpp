@@ -36,6 +36,11 @@ struct BroadPhase::Implementation {
       ++self->left_out;
     return false;  // go on: all pairs are wanted
   }
+  /// By first and second; as one number, for a heap has thousands of pairs.
+  void sort() {
+    const auto number = [](const auto& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
+    std::sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) { return number(a) < number(b); });
+  }
   void begin() {
     pairs.clear();
     left_out = 0;
@@ -85,7 +90,7 @@ const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find() {
     self.moving.collide(&self, &Implementation::collect);
     if (!self.fixed.empty()) self.moving.collide(&self.fixed, &self, &Implementation::collect);
   }
-  std::sort(self.pairs.begin(), self.pairs.end());
+  self.sort();
   return self.pairs;
 }
 
@@ -103,7 +108,7 @@ const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find_of(
     self.moving.collide(object, &self, &Implementation::collect);
     if (!self.fixed.empty()) self.fixed.collide(object, &self, &Implementation::collect);
   }
-  std::sort(self.pairs.begin(), self.pairs.end());
+  self.sort();
   self.pairs.erase(std::unique(self.pairs.begin(), self.pairs.end()), self.pairs.end());  // of two of them: found twice
   return self.pairs;
 }

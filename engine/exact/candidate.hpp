@@ -52,7 +52,7 @@ struct BodyPair {
                             motion.dt * twist.angular);
   }
   /// Displacement of the mover's material point p within one step of `twist` [m].
-  [[nodiscard]] Vector3d moved(const Vector3d& p, const Twist& twist) const {
+  [[nodiscard, gnu::always_inline]] Vector3d moved(const Vector3d& p, const Twist& twist) const {
     return motion.dt * (twist.linear + twist.angular.cross(p));
   }
   /// How far a contact's normal lies in the mover's normal cone at a sample: 1 inside of it, 0 from cone_none on.

@@ -22,6 +22,8 @@ ConvexStep::ConvexStep(std::size_t rows_max, std::size_t bodies_max) {
 
 void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
   rows_.reserve(rows_max);
+  rests_.reserve(rows_max);
+  added_.reserve(rows_max);
   runs_.reserve(rows_max);
   grips_.reserve(rows_max);
   bodies_.reserve(bodies_max);
@@ -33,6 +35,8 @@ void ConvexStep::reserve(std::size_t rows_max, std::size_t bodies_max) {
 
 void ConvexStep::clear() {
   rows_.clear();
+  rests_.clear();
+  added_.clear();
   runs_.clear();
   grips_.clear();
   bodies_.clear();
@@ -64,28 +68,60 @@ void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int secon
     J[5] = arm.x() * n.y() - arm.y() * n.x();
   };
   const std::size_t begin = rows_.size();
+  const std::size_t added_before = added_.size();
   for (const ContactRow& from : rows) {
-    if (rows_.size() == rows_.capacity()) {
+    if (rows_.size() == rows_.capacity() || added_.size() == added_.capacity()) {
       ++left_out_;
       continue;
     }
-    Row& row = rows_.emplace_back();
-    row.g = from.gap + from.curving;
-    row.curving = from.curving;
-    row.k = from.stiffness;
-    row.body = {second, first};
-    if (second != kFixed) set(from, second, 1, row.J[0]);
-    if (first != kFixed) set(from, first, -1, row.J[1]);
+    const std::size_t row = new_row(second, first);
+    rows_[row].g = from.gap + from.curving;
+    rests_[row].curving = from.curving;
+    rows_[row].k = from.stiffness;
+    if (second != kFixed) set(from, second, 1, jacobian(row, 0));
+    if (first != kFixed) set(from, first, -1, jacobian(row, 1));
     order_bodies(row);
+    const std::size_t same = same_row(begin);
+    added_.push_back({static_cast<std::uint32_t>(same), from.stiffness});
+    if (same == row) continue;
+    rows_[same].k += from.stiffness;
+    rows_.pop_back();
+    rests_.pop_back();
   }
-  if (rows_.size() > begin) runs_.push_back({rows_[begin].body, begin, rows_.size(), pair});
+  for (std::size_t i = added_before; i < added_.size(); ++i) added_[i].part /= rows_[added_[i].row].k;
+  if (rows_.size() > begin) runs_.push_back({rests_[begin].body, begin, rows_.size(), pair});
+}
+
+/// The row from `begin` on that the last one is to be solved with: one at the same place, to rounding; else itself. Of
+/// a few before it: those of neighbouring features follow each other.
+std::size_t ConvexStep::same_row(std::size_t begin) const {
+  constexpr std::size_t kLookBack = 48;
+  constexpr double kSame = 1e-12;  // m, of gap and arm
+  const std::size_t last = rows_.size() - 1;
+  if (bodies_.size() <= kDenseMax) return last;
+  const Row& row = rows_[last];
+  const auto near = [&](double a, double b) { return std::abs(a - b) <= kSame; };
+  for (std::size_t r = std::max(begin + kLookBack, last) - kLookBack; r < last; ++r) {
+    const Row& other = rows_[r];
+    if (near(row.g, other.g) && near(rests_[last].curving, rests_[r].curving) &&
+        ((row.J - other.J).array().abs() <= kSame).all())
+      return r;
+  }
+  return last;
 }
 
 /// The first of a row's bodies moves.
-void ConvexStep::order_bodies(Row& row) const {
-  if (row.body[0] != kFixed) return;
-  std::swap(row.body[0], row.body[1]);
-  std::swap(row.J[0], row.J[1]);
+void ConvexStep::order_bodies(std::size_t row) {
+  RowRest& rest = rests_[row];
+  if (rest.body[0] != kFixed) return;
+  std::swap(rest.body[0], rest.body[1]);
+  std::swap(rows_[row].J, rest.J_second);
+}
+
+std::size_t ConvexStep::new_row(int first, int second) {
+  rows_.emplace_back();
+  rests_.push_back({.body = {first, second}});
+  return rows_.size() - 1;
 }
 
 int ConvexStep::add_grip(const Grip& grip, int first, int second, double dt) {
@@ -104,20 +140,20 @@ int ConvexStep::add_grip(const Grip& grip, int first, int second, double dt) {
   const std::array tangents{along, Vector3d(grip.normal.cross(along)), Vector3d(Vector3d::Zero())};
   const std::size_t begin = rows_.size();
   for (const Vector3d& tangent : tangents) {
-    Row& row = rows_.emplace_back();
-    row.both = true;
-    row.g = 0;
-    row.k = grip.drag / dt;
-    row.body = {second, first};
+    const std::size_t row = new_row(second, first);
+    rows_[row].both = true;
+    rows_[row].g = 0;
+    rows_[row].k = grip.drag / dt;
     for (std::size_t side = 0; side < 2; ++side) {
-      if (row.body[side] == kFixed) continue;
-      const Vector3d arm = grip.point - bodies_[at(row.body[side])].p_WC;
-      row.J[side] << tangent, tangent.isZero(0) ? Vector3d(grip.radius * grip.normal) : arm.cross(tangent);
-      if (side == 1) row.J[side] = -row.J[side];
+      if (rests_[row].body[side] == kFixed) continue;
+      const Vector3d arm = grip.point - bodies_[at(rests_[row].body[side])].p_WC;
+      Vector6d& J = jacobian(row, side);
+      J << tangent, tangent.isZero(0) ? Vector3d(grip.radius * grip.normal) : arm.cross(tangent);
+      if (side == 1) J = -J;
     }
     order_bodies(row);
   }
-  runs_.push_back({rows_[begin].body, begin, rows_.size(), {}});
+  runs_.push_back({rests_[begin].body, begin, rows_.size(), {}});
   grips_.push_back({begin, tangents[0], tangents[1], grip.normal, grip.radius});
   return static_cast<int>(grips_.size()) - 1;
 }
@@ -137,7 +173,7 @@ void ConvexStep::evaluate_rates(double dt, Vector6d Body::*velocity, F&& f) cons
       u.tail<3>() -= turn;
     }
     u *= dt;
-    for (std::size_t r = run.begin; r < run.end; ++r) f(r, rows_[r].J[0].dot(u));
+    for (std::size_t r = run.begin; r < run.end; ++r) f(r, rows_[r].J.dot(u));
   }
 }
 
@@ -285,9 +321,10 @@ int ConvexStep::solve(double dt, double threshold) {
   choose_start(dt);
   int iterations = minimize(dt);
   for (Body& body : bodies_) body.during = body.u;
-  for (Row& row : rows_) {
-    row.force = row.before_rebound = -row.k * row.pressed(row.z);
-    row.end_gap = row.z;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
+    rests_[r].force = rests_[r].before_rebound = -row.k * row.pressed(row.z);
+    rests_[r].end_gap = row.z;
   }
   if (hit_ && begin_rebound(dt)) {
     iterations += minimize(dt);
@@ -297,22 +334,25 @@ int ConvexStep::solve(double dt, double threshold) {
   return iterations;
 }
 
-double ConvexStep::rate(const Row& row, Vector6d Body::*velocity) const {
-  double rate = row.J[0].dot(bodies_[at(row.body[0])].*velocity);
-  if (row.body[1] != kFixed) rate += row.J[1].dot(bodies_[at(row.body[1])].*velocity);
+double ConvexStep::rate(std::size_t row, Vector6d Body::*velocity) const {
+  const RowRest& rest = rests_[row];
+  double rate = rows_[row].J.dot(bodies_[at(rest.body[0])].*velocity);
+  if (rest.body[1] != kFixed) rate += rest.J_second.dot(bodies_[at(rest.body[1])].*velocity);
   return rate;
 }
 
 void ConvexStep::sum_up(double dt) {
-  for (const Row& row : rows_) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const RowRest& row = rests_[r];
     if (row.force == 0 && row.before_rebound == 0) continue;
     for (std::size_t side = 0; side < 2; ++side) {
       if (row.body[side] == kFixed) continue;
       Body& body = bodies_[at(row.body[side])];
-      body.push += row.force * row.J[side];
+      const Vector6d& J = jacobian(r, side);
+      body.push += row.force * J;
       if (!hit_) continue;
       body.push.tail<3>() -= row.before_rebound * row.turn[side];
-      const Vector3d more = (row.force - row.before_rebound) * row.J[side].head<3>();
+      const Vector3d more = (row.force - row.before_rebound) * J.head<3>();
       body.shift_moment += dt * body.during.head<3>().cross(more);
     }
   }
@@ -331,10 +371,10 @@ const Vector6d& ConvexStep::velocity_after(int body) const {
 Wrench ConvexStep::grip_wrench(int grip) const {
   VERISIM_ASSERT(at(grip) < grips_.size());
   const PlacedGrip& g = grips_[at(grip)];
-  const Row* rows = &rows_[g.first_row];
+  const RowRest* rows = &rests_[g.first_row];
   const auto pull = [&](auto of) { return Vector3d(of(rows[0]) * g.along + of(rows[1]) * g.across); };
-  const Vector3d more = pull([](const Row& row) { return row.force - row.before_rebound; });
-  return {pull([](const Row& row) { return row.force; }),
+  const Vector3d more = pull([](const RowRest& row) { return row.force - row.before_rebound; });
+  return {pull([](const RowRest& row) { return row.force; }),
           rows[2].force * g.radius * g.normal + rows[0].moved.cross(more)};
 }
 

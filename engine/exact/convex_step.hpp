@@ -81,7 +81,8 @@ class ConvexStep {
     double overlap = std::numeric_limits<double>::infinity();  ///< m, before: deeper rows may be late
     bool began_inside = false;  ///< overlapped when it was first seen: deeper rows are late, by how little ever
   };
-  /// Adds rows between two bodies. Rows beyond rows_max are left out and counted.
+  /// Adds rows between two bodies. Rows beyond rows_max are left out and counted. Of more than kDenseMax bodies rows at
+  /// one place are solved as one, which takes half the time in a heap of boxes and changes nothing but roundings.
   /// @pre both are numbers from add_body or kFixed, and not the same
   void add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair);
   void add_rows(std::span<const ContactRow> rows, int first, int second) { add_rows(rows, first, second, {}); }
@@ -116,20 +117,22 @@ class ConvexStep {
   /// gives acts at the end.
   [[nodiscard]] const Vector3d& shift_moment(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
-  [[nodiscard]] double force(std::size_t row) const { return rows_[row].force; }
+  [[nodiscard]] double force(std::size_t row) const { return part(row) * row_of(row).force; }
   /// How much more the rebound made of that, and by how much the place has moved where it acts [N, m].
-  [[nodiscard]] double rebound(std::size_t row) const { return rows_[row].force - rows_[row].before_rebound; }
-  [[nodiscard]] const Vector3d& moved(std::size_t row) const { return rows_[row].moved; }
+  [[nodiscard]] double rebound(std::size_t row) const {
+    return part(row) * (row_of(row).force - row_of(row).before_rebound);
+  }
+  [[nodiscard]] const Vector3d& moved(std::size_t row) const { return row_of(row).moved; }
   /// Of a grip on its second body, about the grip's point.
   [[nodiscard]] Wrench grip_wrench(int grip) const;
   /// Was it late? Then its overlap is none that a later row may have.
-  [[nodiscard]] bool is_late(std::size_t row) const { return rows_[row].late; }
+  [[nodiscard]] bool is_late(std::size_t row) const { return row_of(row).late; }
   /// Its linearised gap at the end of the step [m].
-  [[nodiscard]] double gap_at_end(std::size_t row) const { return rows_[row].end_gap; }
+  [[nodiscard]] double gap_at_end(std::size_t row) const { return row_of(row).end_gap; }
   [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
   [[nodiscard]] std::size_t rows_max() const { return rows_.capacity(); }
-  [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
-  [[nodiscard]] std::size_t left_out() const { return left_out_; }  ///< rows beyond rows_max
+  [[nodiscard]] std::size_t row_count() const { return added_.size(); }  ///< of add_rows
+  [[nodiscard]] std::size_t left_out() const { return left_out_; }       ///< rows beyond rows_max
   /// Did the last solve end at the minimum? False: at the largest number of iterations, somewhere on the way.
   [[nodiscard]] bool finished() const { return finished_; }
   /// Blocks of the sparse factor of the last solve; 0: it was dense. Above blocks_max() there was no room for them: the
@@ -149,23 +152,34 @@ class ConvexStep {
     Vector6d without = Vector6d::Zero();  ///< u0 of the step, while u0 is that of the rebound
     Vector3d shift_moment = Vector3d::Zero();
   };
+  /// What each iteration reads of a row.
   struct Row {
-    std::array<Vector6d, 2> J;  ///< Jacobian: rate of the gap by the bodies' velocities
-    std::array<int, 2> body;    ///< the second may be kFixed
+    Vector6d J;  ///< Jacobian: rate of the gap by the velocity of its first body
     double g, k;
-    double curving = 0;  ///< m, of g: what curved motion will take from the gap
-    double z = 0;        ///< gap at the end of the step
-    double dz = 0;       ///< its change along the search direction
-    double force = 0, end_gap = 0;
-    double before_rebound = 0;                                         ///< N, of the force
-    Vector3d moved = Vector3d::Zero();                                 ///< m, of its point until the rebound
-    std::array<Vector3d, 2> turn{Vector3d::Zero(), Vector3d::Zero()};  ///< what J has gained by that
-    double asked = kNothing;  ///< m/s, J w at least; kNothing: neither hit nor late
-    bool late = false;
+    double z = 0;         ///< gap at the end of the step
+    double dz = 0;        ///< its change along the search direction
     bool summed = false;  ///< in the stiffness of its run
     bool both = false;    ///< of a grip: it pulls as well
     [[nodiscard]] double pressed(double gap) const { return both ? gap : std::min(0.0, gap); }
     [[nodiscard]] bool acts() const { return both || z < 0; }
+  };
+  /// The rest of it.
+  struct RowRest {
+    std::array<int, 2> body;               ///< the second may be kFixed
+    Vector6d J_second = Vector6d::Zero();  ///< as J
+    double curving = 0;                    ///< m, of g: what curved motion will take from the gap
+    double force = 0, end_gap = 0;
+    double before_rebound = 0;                                         ///< N, of the force
+    Vector3d moved = Vector3d::Zero();                                 ///< m, of its point until the rebound
+    std::array<Vector3d, 2> turn{Vector3d::Zero(), Vector3d::Zero()};  ///< what the Jacobians have gained by that
+    double asked = kNothing;  ///< m/s, the rate at least; kNothing: neither hit nor late
+    bool late = false;
+  };
+  /// A row as it was added. Several may be one row of the problem: where the ends of two edges and the corner between
+  /// them touch a face there are three at one place.
+  struct Added {
+    std::uint32_t row;
+    double part;  ///< of that row's stiffness, and so of its force
   };
   /// Rows between the same two bodies, one after the other.
   struct Run {
@@ -188,7 +202,14 @@ class ConvexStep {
     double cost, slope, curvature;
   };
 
-  void order_bodies(Row& row) const;
+  [[nodiscard]] const RowRest& row_of(std::size_t added) const { return rests_[added_[added].row]; }
+  [[nodiscard]] double part(std::size_t added) const { return added_[added].part; }
+  [[nodiscard]] Vector6d& jacobian(std::size_t row, std::size_t side) {
+    return side == 0 ? rows_[row].J : rests_[row].J_second;
+  }
+  std::size_t new_row(int first, int second);
+  void order_bodies(std::size_t row);
+  [[nodiscard]] std::size_t same_row(std::size_t begin) const;
   int minimize(double dt);
   void note_hits(double dt, double threshold);
   void note_hits(const Run& run, double dt, double threshold);
@@ -196,7 +217,7 @@ class ConvexStep {
   void move_rows(double dt);
   void end_rebound();
   void sum_up(double dt);
-  [[nodiscard]] double rate(const Row& row, Vector6d Body::*velocity) const;
+  [[nodiscard]] double rate(std::size_t row, Vector6d Body::*velocity) const;
   void choose_start(double dt);
   void evaluate_gaps(double dt);
   template <typename F>
@@ -215,6 +236,8 @@ class ConvexStep {
   bool advance(double t);
 
   std::vector<Row> rows_;
+  std::vector<RowRest> rests_;
+  std::vector<Added> added_;
   std::vector<Run> runs_;
   std::vector<PlacedGrip> grips_;
   std::vector<Body> bodies_;

@@ -51,7 +51,7 @@ bool ConvexStep::find_direction_of_one(double dt) {
   const double square = dt * dt;
   for (const Row& row : rows_) {
     if (!row.acts()) continue;
-    const double* J = row.J[0].data();
+    const double* J = row.J.data();
     const double force = dt * row.k * row.z;
     const double stiff = square * row.k;
     for (int i = 0; i < 6; ++i) {
@@ -74,15 +74,18 @@ bool ConvexStep::find_direction_dense(double dt) {
     A.block<6, 6>(i, i) = body.M;
     b.segment<6>(i) = body.M * (body.u0 - body.u);
   }
-  for (const Row& row : rows_) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
     if (!row.acts()) continue;
+    const auto& body = rests_[r].body;
     const double stiff = dt * dt * row.k;
     for (std::size_t i = 0; i < 2; ++i) {
-      if (row.body[i] == kFixed) continue;
-      b.segment<6>(6 * row.body[i]) -= dt * row.k * row.z * row.J[i];
+      if (body[i] == kFixed) continue;
+      const Vector6d& J = jacobian(r, i);
+      b.segment<6>(6 * body[i]) -= dt * row.k * row.z * J;
       for (std::size_t j = 0; j < 2; ++j) {
-        if (row.body[j] == kFixed) continue;
-        A.block<6, 6>(6 * row.body[i], 6 * row.body[j]) += stiff * row.J[i] * row.J[j].transpose();
+        if (body[j] == kFixed) continue;
+        A.block<6, 6>(6 * body[i], 6 * body[j]) += stiff * J * jacobian(r, j).transpose();
       }
     }
   }
@@ -143,7 +146,7 @@ void ConvexStep::sum_stiffness(Run& run, double dt) {
   for (std::size_t r = run.begin; r < run.end; ++r) {
     const Row& row = rows_[r];
     if (!row.summed) continue;
-    const double* J = row.J[0].data();
+    const double* J = row.J.data();
     const double stiff = dt * dt * row.k;
     for (int i = 0; i < 6; ++i) {
       const double scaled = stiff * J[i];
@@ -178,7 +181,7 @@ void ConvexStep::add_run(Run& run, double dt) {
     row.summed = row_acts;
     if (!row_acts) continue;
     acts = true;
-    b += dt * row.k * row.z * row.J[0];
+    b += dt * row.k * row.z * row.J;
   }
   if (!acts) return;
   if (!run.has_sum) sum_stiffness(run, dt);

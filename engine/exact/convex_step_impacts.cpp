@@ -33,39 +33,42 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold) {
   const double factor = std::max(1.0, kRigid * mass / (dt * dt) / stiffest);
   for (std::size_t r = run.begin; r < run.end; ++r) {
     Row& row = rows_[r];
+    RowRest& rest = rests_[r];
     // What began inside leaves no faster than kPushOut, however small the step is.
     const double known = run.pair.overlap + (run.pair.began_inside ? std::min(kUnknown, kPushOut * dt) : kUnknown);
     const bool watches = bodies_.size() > kDenseMax || run.pair.restitution > 0 || run.pair.began_inside;
-    const double overlap = row.curving - row.g;
+    const double overlap = rest.curving - row.g;
     if (run.pair.restitution == 0 && overlap <= known) continue;
-    const double approach = -rate(row, &Body::before);
+    const double approach = -rate(r, &Body::before);
     if (watches && overlap > known + std::max(0.0, approach * dt)) {
-      row.late = late_ = true;
-      row.asked = 0;
+      rest.late = late_ = true;
+      rest.asked = 0;
       row.g = std::max(row.g, -run.pair.overlap - kPushOut * dt);
     } else if (run.pair.restitution > 0 && approach > threshold && -row.g <= kOverlapOfHit * approach * dt) {
-      row.asked = run.pair.restitution * approach;
+      rest.asked = run.pair.restitution * approach;
       row.k *= factor;
     }
-    hit_ = hit_ || row.asked >= 0;
+    hit_ = hit_ || rest.asked >= 0;
   }
 }
 
 /// From the velocities during the step to the problem of those at its end. False if no row that was hit has closed.
 bool ConvexStep::begin_rebound(double dt) {
   bool any = false;
-  for (const Row& row : rows_) any = any || (row.asked >= 0 && row.z < 0);
+  for (std::size_t r = 0; r < rows_.size(); ++r) any = any || (rests_[r].asked >= 0 && rows_[r].z < 0);
   hit_ = any;
   if (!any) return false;
-  for (Row& row : rows_) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    Row& row = rows_[r];
+    const double asked = rests_[r].asked;
     if (row.both) continue;
     // What has not closed is the next step's; so is what was open, and closes only because of the blow: it is handed
     // on.
-    const bool handed_on = row.asked < 0 && row.g > 0 && row.g + dt * rate(row, &Body::u0) > 0;
+    const bool handed_on = asked < 0 && row.g > 0 && row.g + dt * rate(r, &Body::u0) > 0;
     if (row.z >= 0 || handed_on) {
       row.g = std::numeric_limits<double>::infinity();
-    } else if (row.asked >= 0) {
-      row.g = -dt * row.asked;
+    } else if (asked >= 0) {
+      row.g = -dt * asked;
     }
   }
   move_rows(dt);
@@ -77,7 +80,8 @@ bool ConvexStep::begin_rebound(double dt) {
 /// rows' forces in their new places give the velocity at the end.
 void ConvexStep::move_rows(double dt) {
   for (Body& body : bodies_) body.without = body.u0;
-  for (Row& row : rows_) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    RowRest& row = rests_[r];
     const Vector3d& u = bodies_[at(row.body[0])].during.head<3>();
     if (row.body[1] == kFixed) {  // its point moves with the body
       row.moved = dt * u;
@@ -86,8 +90,9 @@ void ConvexStep::move_rows(double dt) {
     row.moved = 0.5 * dt * (u + bodies_[at(row.body[1])].during.head<3>());
     for (std::size_t side = 0; side < 2; ++side) {
       Body& body = bodies_[at(row.body[side])];
-      row.turn[side] = (row.moved - dt * body.during.head<3>()).cross(row.J[side].head<3>());
-      row.J[side].tail<3>() += row.turn[side];
+      Vector6d& J = jacobian(r, side);
+      row.turn[side] = (row.moved - dt * body.during.head<3>()).cross(J.head<3>());
+      J.tail<3>() += row.turn[side];
       if (row.force == 0) continue;
       Vector6d pushed = Vector6d::Zero();
       pushed.tail<3>() = dt * row.force * row.turn[side];
@@ -103,9 +108,9 @@ void ConvexStep::move_rows(double dt) {
 void ConvexStep::end_rebound() {
   for (Body& body : bodies_) body.u0 = body.without;
   double held = 0;  // J, by springs at the start
-  for (const Row& row : rows_) {
-    const double overlap = std::max(0.0, row.curving - row.g);
-    if (row.force > 0 && row.asked < 0) held += 0.5 * row.k * overlap * overlap;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const double overlap = std::max(0.0, rests_[r].curving - rows_[r].g);
+    if (rests_[r].force > 0 && rests_[r].asked < 0) held += 0.5 * rows_[r].k * overlap * overlap;
   }
   double work = 0;  // J, without rebound
   double linear = 0;
@@ -127,7 +132,8 @@ void ConvexStep::end_rebound() {
     s = std::clamp(s, 0.0, 1.0);
   }
   for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
-  for (Row& row : rows_) row.force += s * (-row.k * row.pressed(row.z) - row.force);
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    rests_[r].force += s * (-rows_[r].k * rows_[r].pressed(rows_[r].z) - rests_[r].force);
 }
 
 }  // namespace verisim::exact

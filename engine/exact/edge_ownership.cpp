@@ -49,7 +49,10 @@ bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, con
 /// wall that comes to a cone's tip from the side is met before it is inside.
 bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p) {
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
-  const Vector3d after = p + pair.moved(p, pair.motion.free_twist);
+  const Vector3d way = pair.moved(p, pair.motion.free_twist);
+  const double reach = pair.base.faces[face].trim->reach_outside();
+  if (way.squaredNorm() < reach * reach) return false;
+  const Vector3d after = p + way;
   const SurfaceAt there = surface.at(after);
   return is_on_face(pair.base, face, after - there.distance * there.normal);
 }

@@ -45,6 +45,17 @@ class NearPairs {
     return true;
   }
 
+  /// The box around all blocks, as it is, and around an entity that along the mover's axes: of a tilted mover the box
+  /// along the base's axes is much larger.
+  [[nodiscard]] bool is_near_mover(const BoxTree::Node& entity) const {
+    const BoxTree::Node& whole = blocks_.nodes[0];
+    const Vector3d center = motion_.R.transpose() * (entity.center - motion_.p);
+    const Vector3d half = R_abs_.transpose() * entity.half;
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(center[i] - whole.center[i]) > whole.half[i] + half[i] + motion_.margin) return false;
+    return true;
+  }
+
   /// Of small bodies all that is near the other as a whole is compared with each other: a tree of a dozen items has
   /// twice as many nodes, and most of them are near.
   template <typename Test>
@@ -57,7 +68,8 @@ class NearPairs {
     std::array<const BoxTree::Node*, kFew> near;
     std::size_t count = 0;
     for (const std::uint32_t leaf : entities.leaves)
-      if (are_near(whole, entities.nodes[leaf])) near[count++] = &entities.nodes[leaf];
+      if (are_near(whole, entities.nodes[leaf]) && is_near_mover(entities.nodes[leaf]))
+        near[count++] = &entities.nodes[leaf];
     for (std::size_t i = 0; i < blocks_.leaves.size(); ++i) {
       if (!are_near(boxes_[i], entities.nodes[0])) continue;
       for (std::size_t j = 0; j < count; ++j)

@@ -23,6 +23,8 @@ class Search {
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
+  [[nodiscard]] bool is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
+                                      double way) const;
   [[nodiscard]] double longest_way(const PlacedFeature& placed, const SampleBlock& block) const;
   void reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
                     std::span<double> now, std::span<double> remaining, std::uint32_t face);
@@ -102,9 +104,10 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
     const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - feature.radius_at(c[i]);
     distances.distance[i] = m.distance;
     distances.change[i] = m.change;
+    const bool may_be_row = nearest < motion.margin && nearest > deepest;
     gaps_now[i] = nearest;
-    gaps_ahead[i] = nearest < motion.margin ? nearest + m.change : kOutOfReach;
-    any = any || (nearest < motion.margin && nearest > deepest);
+    gaps_ahead[i] = may_be_row ? nearest + m.change : kOutOfReach;
+    any = any || may_be_row;
   };
   if (is_straight) {
     const Vector3d& n = surface.axis();
@@ -137,9 +140,11 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const ExactEdge& edge = pair_.base.edges[e];
   const PlacedFeature& placed = placed_feature(block);
   if (!may_cross_edge(pair_, placed, edge)) return;
+  const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
+  const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
+  if (is_straight && is_led_all_along(placed, block, edge, way)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
-  const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
   for (std::size_t side = 0; side < 2; ++side) {
     const AnalyticSurface& surface = *pair_.base.faces[edge.faces[side]].surface;
     if (is_straight) {
@@ -153,7 +158,6 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
                       [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
   }
   cost_.samples += 2 * count;
-  const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
   for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - begin);
     Candidate best;
@@ -175,6 +179,22 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
     if (best.gap_ahead != kOutOfReach)
       add_row(placed, best, size, static_cast<std::uint32_t>(pair_.base.faces.size()) + e, 0);
   }
+}
+
+/// True if may_cross() would be false of all segments of a straight block: one of two planes leads at both of its ends,
+/// by more than a step may change.
+bool Search::is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
+                              double way) const {
+  const auto lead_at = [&](double t) {
+    const Vector3d p = placed.origin + t * placed.x;
+    const AnalyticSurface& a = *pair_.base.faces[edge.faces[0]].surface;
+    const AnalyticSurface& b = *pair_.base.faces[edge.faces[1]].surface;
+    return (p - a.point()).dot(a.axis()) - (p - b.point()).dot(b.axis());
+  };
+  const double half = placed.feature->half_width;
+  const double first = lead_at(pair_.mover.sample_c[block.begin] - half);
+  const double last = lead_at(pair_.mover.sample_c[block.end - 1] + half);
+  return first * last > 0 && std::min(std::abs(first), std::abs(last)) > 2 * way + 2 * kSlack;
 }
 
 /// False if a segment is out of reach of the faces of an edge, or one of them is farther all along it. Of its middle's

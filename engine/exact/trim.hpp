@@ -50,6 +50,10 @@ class Trim {
   /// Where a point of the surface lies. About 10 ns.
   [[nodiscard]] Answer find(const AnalyticSurface& surface, const Vector3d& foot) const;
 
+  /// m, of a plane: a foot that is outside now and moves by no more comes to no place that find() answers with inside
+  /// or border. 0 of other surfaces.
+  [[nodiscard]] double reach_outside() const { return a_.around || b_.around ? 0 : std::min(a_.cell, b_.cell); }
+
   /// For engine/base/archive.hpp.
   static void fields(auto& archive, Trim& self) {
     for (auto* axis : {&self.a_, &self.b_}) archive(axis->from, axis->cell, axis->per_cell, axis->count, axis->around);

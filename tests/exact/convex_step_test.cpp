@@ -161,6 +161,60 @@ TEST(Stack, RestsOnItsLowestBody) {
   }
 }
 
+// A dozen bodies in a chain, with and without blows. Each row is cut into several at its place, in any order: nothing
+// but roundings changes, and each part has its part of the force.
+TEST(ConvexStep, SolvesRowsAtOnePlaceAsTheirSum) {
+  constexpr int kBodies = 12;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Draw draw(seed);
+    ConvexStep whole(1000, kBodies), cut(1000, kBodies);
+    for (ConvexStep* step : {&whole, &cut}) {
+      Draw of_bodies(100 + seed);
+      for (int i = 0; i < kBodies; ++i) {
+        const Vector6d u = random_velocity(of_bodies);
+        (void)step->add_body(of_bodies.in_box({0.1, 0.1, 0.1}), random_matrix(of_bodies), u, u);
+      }
+    }
+    const ConvexStep::Pair pair{.restitution = seed % 2 == 0 ? 0 : 0.5, .overlap = 1e-4};
+    std::vector<std::vector<std::size_t>> parts;  // of each row of `whole`, rows of `cut`
+    std::size_t added = 0;
+    for (int i = 0; i < kBodies; ++i) {
+      const std::vector<ContactRow> rows = random_rows(draw, 6);
+      std::vector<ContactRow> pieces;
+      parts.resize(parts.size() + rows.size());
+      for (int piece = 0; piece < 3; ++piece) {
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+          if (piece > 0 && draw.between(0, 1) < 0.3) continue;
+          parts[parts.size() - rows.size() + r].push_back(added++);
+          pieces.push_back(rows[r]);
+        }
+      }
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        for (const std::size_t p : parts[parts.size() - rows.size() + r])
+          pieces[p - (added - pieces.size())].stiffness /=
+              static_cast<double>(parts[parts.size() - rows.size() + r].size());
+      whole.add_rows(rows, i == 0 ? kFixed : i - 1, i, pair);
+      cut.add_rows(pieces, i == 0 ? kFixed : i - 1, i, pair);
+    }
+    (void)whole.solve(kStep);
+    (void)cut.solve(kStep);
+    EXPECT_EQ(cut.row_count(), added);
+    for (int i = 0; i < kBodies; ++i) {
+      EXPECT_LE((whole.velocity(i) - cut.velocity(i)).norm(), 1e-9);
+      EXPECT_LE((whole.velocity_after(i) - cut.velocity_after(i)).norm(), 1e-9);
+    }
+    double most = 0;
+    for (std::size_t r = 0; r < parts.size(); ++r) most = std::max(most, whole.force(r));
+    EXPECT_GT(most, 0);
+    for (std::size_t r = 0; r < parts.size(); ++r) {
+      for (const std::size_t p : parts[r]) {
+        EXPECT_NEAR(cut.force(p), whole.force(r) / static_cast<double>(parts[r].size()), 1e-6 * most);
+        EXPECT_NEAR(cut.gap_at_end(p), whole.gap_at_end(r), 1e-12);
+      }
+    }
+  }
+}
+
 TEST(ConvexStep, LeavesOutRowsBeyondItsCapacityAndSaysSo) {
   Draw draw(1);
   ConvexStep step(10);
