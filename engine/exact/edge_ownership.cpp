@@ -59,7 +59,8 @@ bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p
 
 /// How far a ball's contact point lies from the face that the ball belongs to [m]: the least within the step, for a
 /// body that tilts comes down on other places than now.
-double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
+double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const AnalyticSurface& surface,
+                    const Candidate& c) {
   const Feature& feature = *placed.feature;
   const AnalyticSurface& own = *pair.mover.faces[feature.own_face].surface;
   const Matrix3d to_mover = pair.motion.R.transpose();
@@ -67,7 +68,11 @@ double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Can
   const auto off = [&](const Vector3d& normal) {
     return std::abs(own.at(place - feature.radius_at(c.place.c) * (to_mover * normal)).distance);
   };
-  const Vector3d after = c.at.normal - pair.motion.dt * pair.motion.free_twist.angular.cross(c.at.normal);
+  // The normal that the place meets where the step takes it, turned back to where the mover is now.
+  const RelativeMotion& motion = pair.motion;
+  const Vector3d there =
+      feature.half_width > 0 ? surface.at(c.p + pair.moved(c.p, motion.free_twist)).normal : c.at.normal;
+  const Vector3d after = there - motion.dt * motion.free_twist.angular.cross(there);
   const Vector3d tangent = placed.tangent(c.place);
   const double slope = c.at.normal.dot(tangent) - feature.radius_slope;
   const double slope_after = after.dot(tangent) - feature.radius_slope;
@@ -140,7 +145,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     const Vector3d contact_point =
         pair.motion.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.p);
     const SearchThresholds& fade = pair.motion.thresholds;
-    const double off = off_own_face(pair, placed, c);
+    const double off = off_own_face(pair, placed, *pair.base.faces[face].surface, c);
     c.weight = std::min(1.0, (fade.own_face_none - off) / (fade.own_face_none - fade.own_face_full));
     return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
   }

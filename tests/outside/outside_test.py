@@ -30,13 +30,13 @@ class OutsideTest(SceneTest):
         values = np.concatenate([pose[0], draw.uniform(-0.1, 0.1, 3), draw.uniform(-3, 3, 3)])
         return dict(zip("x y z qx qy qz qw vx vy vz wx wy wz".split(), values))
 
-    def check_cylinder(self, gains=1e-3, **settings):
-        pose, twist, _ = self.run_scene("cylinder_in_groove.lua", "b", **settings)
+    def check_cylinder(self, **settings):
+        pose = self.run_scene("cylinder_in_groove.lua", "b", **settings).pose
         overlap = ruler.overlap_of_cylinder_and_groove(pose).max()
-        energy = ruler.cylinder_energy(pose, twist, CYLINDER_MASS)
+        energy = ruler.cylinder_energy(pose, CYLINDER_MASS)
         gain = (energy - np.minimum.accumulate(energy)).max()
         self.assertLessEqual(overlap, 20e-6)
-        self.assertLessEqual(gain, gains * (energy[0] - energy.min()))
+        self.assertLessEqual(gain, 1e-3 * (energy[0] - energy.min()))
 
     def test_the_rim_of_a_lying_cylinder_does_not_sink_into_the_grooves_edge(self):
         self.check_cylinder()
@@ -45,9 +45,7 @@ class OutsideTest(SceneTest):
         for voxelsize in ((0.0005, 0.001, 0.002, 0.004) if LONG else (0.002,)):
             for seed in (range(24) if LONG else (1, 4, 7, 8, 12, 19)):  # those that were lost
                 with self.subTest(seed=seed, voxelsize=voxelsize):
-                    # Wanted: 1e-3. One drop of 24 gains 1.2e-3 to 1.7e-3 as it rolls over the groove's edge.
-                    self.check_cylinder(gains=2e-3 if seed == 8 else 1e-3, voxelsize=voxelsize, duration=0.6,
-                                        **self.random_drop(seed))
+                    self.check_cylinder(voxelsize=voxelsize, duration=0.6, **self.random_drop(seed))
 
     def test_prisms_fit_into_their_holes(self):
         clearances = (5e-6, 2e-5, 1e-4) if LONG else (2e-5,)
@@ -59,8 +57,7 @@ class OutsideTest(SceneTest):
                     overlap = ruler.overlap_of_prism_and_hole(recorded.pose, n, c)
                     inside = recorded.pose[:, 2] < 0.043  # the lead-in and 1 mm more are within the block
                     self.assertTrue(inside[-1], "it goes in")
-                    # Wanted: 0.02 c. Two of 30 differ at 5 um, where it is a rounding of contacts (1e-7 m).
-                    self.assertLessEqual(overlap[inside].max(), max(0.02 * c, 1.4e-7))
+                    self.assertLessEqual(overlap[inside].max(), 0.02 * c)
                     self.assertLessEqual(overlap.max(), 1e-6)
                     self.assertLessEqual(self.largest_force(recorded), 2 * of_pin)
 

@@ -74,13 +74,30 @@ def overlap_of_cylinder_and_groove(pose, radius=0.01, height=0.03, half=0.03 / m
     return deepest
 
 
-def cylinder_energy(pose, twist, mass, radius=0.01, height=0.03, g=9.81):
+def velocities(pose, dt):
+    """Linear and angular velocity (world), by central differences: of all poses but the first and the last.
+
+    A recorded velocity is the one that led to its pose, of half a step earlier. Where a body of mass m is turned upwards
+    at v, recorded pose and velocity seem to gain m g v dt. At an inelastic blow the difference is the mean of the
+    velocities before and after, whose energy is not below that after.
+    """
     R = rotations(pose)
-    v, w = twist[:, :3], np.einsum("ikj,ik->ij", R, twist[:, 3:])  # omega in body axes
+    turn = np.einsum("nij,nkj->nik", R[2:], R[:-2])
+    axis = np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1) / 2
+    sine = np.linalg.norm(axis, axis=1)
+    angle = np.arctan2(sine, (np.trace(turn, axis1=1, axis2=2) - 1) / 2)
+    scale = np.where(sine > 0, angle / np.maximum(sine, 1e-300), 1)
+    return (pose[2:, :3] - pose[:-2, :3]) / (2 * dt), axis * scale[:, None] / (2 * dt)
+
+
+def cylinder_energy(pose, mass, dt=0.001, radius=0.01, height=0.03, g=9.81):
+    """Kinetic and potential, of all poses but the first and the last."""
+    v, w_world = velocities(pose, dt)
+    w = np.einsum("ikj,ik->ij", rotations(pose[1:-1]), w_world)  # in body axes
     across = mass * (3 * radius**2 + height**2) / 12
     along = mass * radius**2 / 2
     kinetic = 0.5 * mass * (v * v).sum(1) + 0.5 * (across * (w[:, 0]**2 + w[:, 1]**2) + along * w[:, 2]**2)
-    return kinetic + mass * g * pose[:, 2]
+    return kinetic + mass * g * pose[1:-1, 2]
 
 
 def peg_points(n, chamfer_by, R=0.01, L=0.06, ch=0.001):

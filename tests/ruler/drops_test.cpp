@@ -1,7 +1,7 @@
 // What `exact` records beside the true overlap, over random drops and presses of 16 bodies on 16 seats: 200 of them;
 // 2,000 with VERISIM_LONG_TESTS=1, or those from A to B - 1 with VERISIM_DROPS=A-B. It prints how they differ, by kind,
 // and every scene beyond the goal: within 5 um or 10 %, no overlap above 50 um, mechanical energy never rises. Asserted
-// is that of the 200 none is beyond it. Of others it only tells.
+// is that of the 200 none is beyond it. Of others it only tells: of 2,000 none was, when this was written.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -207,9 +207,14 @@ TEST(RandomDrops, AreRecordedAsDeepAsTheyAre) {
   const std::vector<drops::Loaded> seats = drops::loaded(drops::seat_kinds());
   const Seeds asked = seeds();
   std::vector<Outcome> outcomes;
-  for (std::uint64_t seed = asked.from; seed < asked.to; ++seed)
+  const auto drop = [&](std::uint64_t seed) {
     outcomes.push_back(
         outcome_of(bodies[seed % bodies.size()], seats[(seed + seed / bodies.size()) % seats.size()], seed));
+  };
+  for (std::uint64_t seed = asked.from; seed < asked.to; ++seed) drop(seed);
+  // Rings that slide fast along an edge or a cone of nearly their own radius: 61 and 73 um deep once.
+  for (const std::uint64_t seed : {894, 1518})
+    if (!asked.are_asked_for) drop(seed);
   print_rows("body", outcomes, &Outcome::body);
   print_rows("seat", outcomes, &Outcome::seat);
   print_failures(outcomes);
