@@ -37,11 +37,11 @@
 // its gap within the step, (v dt)^2 / (2 rho) for a place that slides with speed v along a wall of radius of curvature
 // rho, if the bodies move on as they did in the last step (ContactRow::curving). What is left is of third order, and
 // what the step itself changes: r |I^-1 (omega x L)| dt^2 / 2 for a place at r of a body whose spin changes its axis
-// (dynamics/free_rotation.hpp), and all of it after a blow. Rows of straight edges know it likewise; those of curved ones
-// stay linear: a place that slides or turns overlaps by half of its displacement times the change of the normal, and
-// gives it back in the next step.
-// Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there is no
-// formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7 um.
+// (dynamics/free_rotation.hpp), and all of it after a blow. Rows of straight edges know it likewise; those of curved
+// ones stay linear: a place that slides or turns overlaps by half of its displacement times the change of the normal,
+// and gives it back in the next step. Where two rims of nearly the same radius cross, the crossing point is faster than
+// either body. For that there is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2
+// m/s overlapped by up to 7 um.
 #pragma once
 
 #include <memory>
@@ -67,8 +67,8 @@ struct SearchThresholds {
   /// that face. So the end of a segment does not stand for the closest place if that lies in the next segment. Above
   /// the error of the closest place (1e-10), below any clearance (1e-5).
   double own_face_full = 1e-7, own_face_none = 1e-6;
-  /// m: a point that rests on a face overlaps it by less, but for loads of 10 N on a corner and more. Below a fiftieth of
-  /// the tightest fits, which it limits: a place is taken for one on the edge until it is so deep.
+  /// m: a point that rests on a face overlaps it by less, but for loads of 10 N on a corner and more. Below a fiftieth
+  /// of the tightest fits, which it limits: a place is taken for one on the edge until it is so deep.
   double coincident = 4e-8;
   /// Sines of 25 and 40 degrees. A contact normal should lie in the mover's normal cone at the sample. Outside of it
   /// the contact's weight falls from 1 to 0 between these angles out of the cone: more than a body tilts in its fit.

@@ -1,6 +1,7 @@
 #include "engine/exact/search.hpp"
 
 #include "engine/exact/conforming_normals.hpp"
+#include "engine/exact/curving.hpp"
 #include "engine/exact/edge_crossing.hpp"
 #include "engine/exact/edge_ownership.hpp"
 #include "engine/exact/near_pairs.hpp"
@@ -47,10 +48,6 @@ class Search {
   void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
   void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity,
                double curving);
-  [[nodiscard]] double curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const;
-  [[nodiscard]] double curving_of_edges(const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) const;
-  [[nodiscard]] double curving_along(const Vector3d& way, double curves) const;
-  [[nodiscard]] PlacedFeature moved_on(const PlacedFeature& placed) const;
 
   const BodyPair pair_;
   NearPairs near_;
@@ -181,7 +178,7 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
     }
     if (best.gap_ahead != kOutOfReach)
       add_row(placed, best, size, static_cast<std::uint32_t>(pair_.base.faces.size()) + e,
-              curving_of_edges(placed, best, edge));
+              curving_of_edges(pair_, placed, best, edge));
   }
 }
 
@@ -421,65 +418,9 @@ bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) co
   return true;
 }
 
-/// How far below its linear change the gap is at the end of the step [m], if the mover goes on as it did in the last:
-/// surfaces and motion are curved, and along the feature the closest place moves.
-double Search::curving(const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) const {
-  const RelativeMotion& motion = pair_.motion;
-  const Feature& feature = *placed.feature;
-  const Vector3d way = pair_.moved(c.p, motion.last_twist);
-  if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  if (!placed.is_arc() && surface.kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
-    return curving_along(way, 0.5 * surface.axis().dot(motion.dt * motion.last_twist.angular.cross(way)));
-  const auto least = [&](const PlacedFeature& at) {
-    double gap = 0;
-    with_measure(pair_.seen_from(surface, at, {}), [&](auto&& measure_at) {
-      const Measure m = measure_at(c.place.c, c.place.s);
-      const double slope = m.slope - feature.radius_slope;
-      const double reach = 2 * feature.half_width;
-      // Places farther away have rows of their own.
-      const double t = std::abs(slope) < m.bend * reach ? -slope / m.bend : 0;
-      gap = m.distance + t * (slope + 0.5 * t * m.bend);
-    });
-    return gap;
-  };
-  return curving_along(way, least(moved_on(placed)) - least(placed) - c.at.normal.dot(way));
-}
-
-/// Likewise of two straight edges, whose distance is that of their lines. Of curved ones nobody knows: 0.
-double Search::curving_of_edges(const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) const {
-  constexpr double kAlike = 1e-6;  // of two normals: that of the lines is the contact's
-  const RelativeMotion& motion = pair_.motion;
-  const Vector3d way = pair_.moved(c.p, motion.last_twist);
-  if (placed.is_arc() || edge.extent != ExactEdge::Extent::line) return 0;
-  if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  const auto normal_of = [&](const PlacedFeature& at) {
-    const Vector3d across = at.x.cross(edge.direction).normalized();
-    return across.dot(c.normal) < 0 ? Vector3d(-across) : across;
-  };
-  const Vector3d normal = normal_of(placed);
-  if ((normal - c.normal).squaredNorm() > kAlike * kAlike) return 0;
-  const PlacedFeature after = moved_on(placed);
-  const auto gap = [&](const PlacedFeature& at, const Vector3d& n) { return n.dot(at.origin - edge.center); };
-  return curving_along(way, gap(after, normal_of(after)) - gap(placed, normal) - normal.dot(way));
-}
-
-/// Of a place that goes along `way`: what curves, if it is a curve and no kink, and takes from the gap.
-double Search::curving_along(const Vector3d& way, double curves) const {
-  return curves < -pair_.motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
-}
-
-/// Where the feature is after a step in which the bodies go on as they did in the last.
-PlacedFeature Search::moved_on(const PlacedFeature& placed) const {
-  const RelativeMotion& motion = pair_.motion;
-  const Vector3d turn = motion.dt * motion.last_twist.angular;
-  const auto turned = [&](const Vector3d& v) { return Vector3d(v + turn.cross(v + 0.5 * turn.cross(v))); };
-  const Vector3d moved = pair_.moved(placed.origin, motion.last_twist);
-  return {placed.feature, placed.origin + moved + 0.5 * turn.cross(moved), turned(placed.x), turned(placed.y)};
-}
-
 /// Adds the row of a candidate that touches the face's surface, not a plane beside it.
 void Search::add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
-  add_row(placed, c, count, face, curving(placed, c, *pair_.base.faces[face].surface));
+  add_row(placed, c, count, face, curving(pair_, placed, c, *pair_.base.faces[face].surface));
 }
 
 /// Adds the row of a candidate that stands for `count` segments.

@@ -45,7 +45,7 @@ class Assemblies(ProgramTest):
             self.assertLess(summary["max_penetration_m"], 1e-6)
 
     def test_a_pressed_shaft_stays_in_the_mouth_under_every_method(self):
-        for hybrid in ("off", "restore", "exact"):
+        for hybrid in ("off", "restore", "exact")[2 if SANITIZED else 0:]:
             for seed in SEEDS[:2]:
                 summary = self.assert_ends("not assembled", seed, hybrid=hybrid, **PRESSED)
         # Two leads of 45 degrees lie on each other when the shaft's end is 1 mm less 9.75 um below the bore's corner.
@@ -54,8 +54,10 @@ class Assemblies(ProgramTest):
     def test_a_shaft_with_a_voxel_of_room_goes_in_under_restore_and_exact_and_not_without_them(self):
         for seed in SEEDS:
             self.assert_ends("assembled", seed, hybrid="restore", **LOOSE)
-            self.assert_ends("not assembled", seed, hybrid="off", **LOOSE)
-        self.assert_ends("assembled", 1, hybrid="exact", **LOOSE)
+            if not SANITIZED:
+                self.assert_ends("not assembled", seed, hybrid="off", **LOOSE)
+        if not SANITIZED:
+            self.assert_ends("assembled", 1, hybrid="exact", **LOOSE)
 
     def test_the_bearing_goes_into_its_housing_as_one_body(self):
         summary = self.assert_ends("assembled", 1, hybrid="exact", **ONLY_BEARING)
@@ -65,7 +67,8 @@ class Assemblies(ProgramTest):
         for settings in ({"hybrid": "exact"}, {"hybrid": "restore", **LOOSE})[:1 if SANITIZED else 2]:
             first = self.assemble(4, **settings)["state_hash"]
             self.assertEqual(self.assemble(4, "--threads", "2", **settings)["state_hash"], first)
-            self.assertNotEqual(self.assemble(5, **settings)["state_hash"], first)
+            if not SANITIZED:
+                self.assertNotEqual(self.assemble(5, **settings)["state_hash"], first)
             self.succeed("replay", self.path("run.h5"), "--verify")
 
     def test_what_is_assembled_comes_out_and_goes_back(self):
@@ -78,9 +81,10 @@ class Assemblies(ProgramTest):
         files = [os.path.join(MODELS, "freecad_cc0", f) for f in ("bearing_20x37x9.stp", "axis.stp")]
         drawn = {"model": ",".join(files), "part": "axis", "place": "{0.009,0,0}", "direction": "{1,0,0}",
                  "distance": 0.05, "error": 0, "tilt": 0, "tremor": 0}
-        for hybrid in ("restore", "exact"):
+        for hybrid in ("restore", "exact")[1 if SANITIZED else 0:]:
             self.assert_ends("assembled", 1, hybrid=hybrid, **drawn)
-        self.assert_ends("not assembled", 1, hybrid="off", **drawn)
+        if not SANITIZED:
+            self.assert_ends("not assembled", 1, hybrid="off", **drawn)
 
     def test_says_what_it_cannot_use(self):
         scenario = os.path.join(SOURCE, "scenarios", "assembly.lua")

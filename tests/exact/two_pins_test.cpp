@@ -3,6 +3,7 @@
 
 #include "tests/exact/held_pin.hpp"
 #include "tests/exact/scenes.hpp"
+#include "tests/length.hpp"
 #include "tests/support/tolerance.hpp"
 
 namespace verisim::exact::test::two_pins_test {
@@ -47,7 +48,7 @@ HeldBody held_plate(const Solid& held) {
 // shaking hand presses with 12 N near the tips of these half-moons. With a single row per group, at the place that is
 // closest by a rounding error, the plate tips to and fro, 5 um deep and at half a radian per second.
 TEST(PlateWithTwoPins, LiesStillBesideItsHoles) {
-  for (double turn = 3.9; turn < 4.65; turn += 0.1) {
+  for (double turn = 3.9; turn < 4.65; turn += verisim::test::by_length(0.4, 0.1, 0.1)) {
     SCOPED_TRACE(turn);
     HeldBody plate = held_plate(two_pins(kHole - 1e-5));
     const Vector3d beside = 0.001 * Vector3d(std::cos(turn), std::sin(turn), 0);

@@ -114,9 +114,10 @@ TEST(HandOnWall, HumsBehindStepsOfTheEncoderWithoutFriction) {
   h.resolution = 55e-6;
   h.frames = 10;
   h.stiffness = 316;
-  EXPECT_EQ(hold(h).outcome, Outcome::limit_cycle);
-  h.friction = 0.01;
-  EXPECT_EQ(hold(h).outcome, Outcome::stable);
+  for (const double friction : test::some_of({0.0, 0.01})) {
+    h.friction = friction;
+    EXPECT_EQ(hold(h).outcome, friction == 0 ? Outcome::limit_cycle : Outcome::stable);
+  }
 }
 
 // Who looks four times as long finds the same bound.
@@ -125,7 +126,7 @@ TEST(HandOnWall, HasABoundThatDoesNotDependOnHowLongOneLooks) {
   h.mass = 0.1;
   for (const double by : {0.99, 1.01}) {
     h.stiffness = by * bound_by_eigenvalues(h) / (1 - 1.0 / h.frames);
-    for (const unsigned blocks : {6U, 8U, 10U})
+    for (const unsigned blocks : test::some_of({6U, 8U, 10U}))
       EXPECT_EQ(hold(h, blocks).outcome, by < 1 ? Outcome::stable : Outcome::diverged) << by << " " << blocks;
   }
 }

@@ -160,7 +160,7 @@ TEST_P(OfPairs, RemotesThatAreTurnedOverTurnNoHead) {
 }
 
 TEST(Turns, FasterThanHeadsTurnAreTold) {
-  for (const char* sensor : {"wiimote", "lamp", "low-sensitivity"})
+  for (const char* sensor : test::some_of({"wiimote", "lamp", "low-sensitivity"}))
     for (const Trajectory& path : trajectories())
       for (const char* tracker : {"geometric", "three-led", "scaat", "stereo", "scaat/3"}) {
         SCOPED_TRACE(fmt::format("{}, {}, {}", sensor, path.name, tracker));
