@@ -67,8 +67,8 @@ struct SearchThresholds {
   /// that face. So the end of a segment does not stand for the closest place if that lies in the next segment. Above
   /// the error of the closest place (1e-10), below any clearance (1e-5).
   double own_face_full = 1e-7, own_face_none = 1e-6;
-  /// m: a point that rests on a face overlaps it by less, but for loads of 10 N on a corner and more. Below a fiftieth
-  /// of the tightest fits, which it limits: a place is taken for one on the edge until it is so deep.
+  /// m: a point that rests on a face overlaps it by less, but for loads of some 20 N on a corner and more. Below a
+  /// fiftieth of the tightest fits, which it limits: a place is taken for one on the edge until it is so deep.
   double coincident = 4e-8;
   /// Sines of 25 and 40 degrees. A contact normal should lie in the mover's normal cone at the sample. Outside of it
   /// the contact's weight falls from 1 to 0 between these angles out of the cone: more than a body tilts in its fit.
