@@ -160,6 +160,13 @@ class Columns {
   void each_written(std::span<const std::size_t> parts, const F& f) const {
     each_run(parts, [&](const Run& run) { f(run.offset, run.bytes); });
   }
+  [[nodiscard]] std::size_t part_count() const { return parts_.size(); }
+  /// Where the facts of a part lie in the state: f(offset, bytes).
+  template <typename F>
+  void of_part(std::size_t part, const F& f) const {
+    VERISIM_ASSERT(part < parts_.size());
+    f(parts_[part].offset, parts_[part].bytes);
+  }
   void put_other(std::byte* at) const { other_.put_all(at); }
   void put_table_row(std::byte* at, std::size_t subject) const { table_.put_all(at, subject); }
 

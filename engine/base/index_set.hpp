@@ -2,6 +2,7 @@
 // order they came in.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -26,12 +27,18 @@ class IndexSet {
     VERISIM_ASSERT(i / kBits < words_.size());
     return (words_[i / kBits] >> i % kBits & 1) != 0;
   }
-  /// Appends all of them, ascending, and empties the set. Costs their number and a 64th of the size.
-  void move_to(std::vector<std::size_t>& list) {
+  /// Appends all of them, ascending. Costs their number and a 64th of the size.
+  void append_to(std::vector<std::size_t>& list) const {
     for (std::size_t w = 0; w < words_.size(); ++w) {
-      for (; words_[w] != 0; words_[w] &= words_[w] - 1)
-        list.push_back(w * kBits + static_cast<std::size_t>(std::countr_zero(words_[w])));
+      for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
+        list.push_back(w * kBits + static_cast<std::size_t>(std::countr_zero(left)));
     }
+  }
+  void clear() { std::fill(words_.begin(), words_.end(), 0); }
+  /// Appends all of them and empties the set.
+  void move_to(std::vector<std::size_t>& list) {
+    append_to(list);
+    clear();
   }
 
  private:

@@ -9,6 +9,15 @@
 #include "engine/base/error.hpp"
 
 namespace verisim {
+namespace {
+
+/// Of the diagonal of its box: how much larger on every side the tree's is. A hand's part at 0.2 m/s then leaves it
+/// after some twenty frames.
+constexpr double kReserve = 0.05;
+/// A box so many times as large as it needs to be is made anew: it was that of a body that has slowed down.
+constexpr double kTooLarge = 4;
+
+}  // namespace
 
 struct BroadPhase::Implementation {
   struct Box {
@@ -16,11 +25,13 @@ struct BroadPhase::Implementation {
     std::unique_ptr<fcl::CollisionObjectd> object;
     Vector3d center, half;
     bool can_move;
+    bool has_left = false;  ///< the box that it had in the tree
   };
   fcl::DynamicAABBTreeCollisionManagerd moving, fixed;
   bool fixed_ready = false;
+  bool anew = true;  ///< are all to be looked at?
   std::vector<Box> boxes;
-  std::vector<fcl::CollisionObjectd*> placed;  ///< those that find_of() is asked for
+  std::vector<fcl::CollisionObjectd*> left;  ///< of movable bodies that have left their boxes
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   std::size_t left_out = 0;
 
@@ -41,11 +52,23 @@ struct BroadPhase::Implementation {
     const auto number = [](const auto& pair) { return std::uint64_t{pair.first} << 32 | pair.second; };
     std::sort(pairs.begin(), pairs.end(), [&](const auto& a, const auto& b) { return number(a) < number(b); });
   }
-  void begin() {
+  void find_all() {
     pairs.clear();
     left_out = 0;
     if (!fixed_ready && !fixed.empty()) fixed.update();
     fixed_ready = true;
+    if (moving.empty()) return;
+    moving.update();
+    moving.collide(this, &collect);
+    if (!fixed.empty()) moving.collide(&fixed, this, &collect);
+  }
+  void find_of_left() {
+    std::erase_if(pairs, [&](const auto& pair) { return boxes[pair.first].has_left || boxes[pair.second].has_left; });
+    moving.update(left);
+    for (fcl::CollisionObjectd* const object : left) {
+      moving.collide(object, this, &collect);
+      if (!fixed.empty()) fixed.collide(object, this, &collect);
+    }
   }
 };
 
@@ -64,7 +87,7 @@ BroadPhase::BroadPhase(const std::vector<BroadPhaseBody>& bodies)
     self.boxes.push_back(std::move(box));
   }
   self.moving.setup();
-  self.placed.reserve(bodies.size());
+  self.left.reserve(bodies.size());
   make_room();
 }
 
@@ -74,42 +97,36 @@ void BroadPhase::set_pose(std::size_t body, const Pose& X_WB, double ahead) {
   VERISIM_ASSERT(body < implementation_->boxes.size());
   VERISIM_ASSERT(is_placement(X_WB));  // the tree's search would not end
   VERISIM_ASSERT(is_not_negative(ahead));
-  Implementation::Box& box = implementation_->boxes[body];
-  VERISIM_ASSERT(box.can_move || !implementation_->fixed_ready);
-  box.shape->side = 2 * (box.half + Vector3d::Constant(ahead));
+  Implementation& self = *implementation_;
+  Implementation::Box& box = self.boxes[body];
+  VERISIM_ASSERT(box.can_move || !self.fixed_ready);
+  const Matrix3d R = X_WB.rotation.toRotationMatrix();
+  const Vector3d center = X_WB * box.center;
+  const Vector3d half = box.half + Vector3d::Constant(ahead);
+  const Vector3d half_W = R.cwiseAbs() * half;
+  const fcl::AABBd& kept = box.object->getAABB();
+  const fcl::AABBd needed(center - half_W, center + half_W);
+  if (!self.anew && kept.contain(needed) && kept.radius() < kTooLarge * needed.radius()) return;
+  box.shape->side = 2 * (half + Vector3d::Constant(box.can_move ? 2 * kReserve * box.half.norm() : 0));
   box.shape->computeLocalAABB();
-  box.object->setTransform(X_WB.rotation.toRotationMatrix(), X_WB * box.center);
+  box.object->setTransform(R, center);
   box.object->computeAABB();
+  if (!box.has_left && box.can_move) self.left.push_back(box.object.get());
+  box.has_left = box.can_move;
 }
 
 const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find() {
   Implementation& self = *implementation_;
-  self.begin();
-  if (!self.moving.empty()) {
-    self.moving.update();
-    self.moving.collide(&self, &Implementation::collect);
-    if (!self.fixed.empty()) self.moving.collide(&self.fixed, &self, &Implementation::collect);
-  }
-  self.sort();
-  return self.pairs;
-}
-
-const std::vector<std::pair<std::uint32_t, std::uint32_t>>& BroadPhase::find_of(std::span<const std::size_t> bodies) {
-  Implementation& self = *implementation_;
-  self.begin();
-  self.placed.clear();
-  for (const std::size_t i : bodies) {
-    VERISIM_ASSERT(i < self.boxes.size());
-    VERISIM_ASSERT(self.boxes[i].can_move);
-    self.placed.push_back(self.boxes[i].object.get());
-  }
-  if (!self.placed.empty()) self.moving.update(self.placed);
-  for (fcl::CollisionObjectd* const object : self.placed) {
-    self.moving.collide(object, &self, &Implementation::collect);
-    if (!self.fixed.empty()) self.fixed.collide(object, &self, &Implementation::collect);
-  }
+  if (self.left.empty() && !self.anew) return self.pairs;
+  if (self.anew || 2 * self.left.size() > self.moving.size())
+    self.find_all();
+  else
+    self.find_of_left();
   self.sort();
   self.pairs.erase(std::unique(self.pairs.begin(), self.pairs.end()), self.pairs.end());  // of two of them: found twice
+  for (Implementation::Box& box : self.boxes) box.has_left = false;
+  self.left.clear();
+  self.anew = false;
   return self.pairs;
 }
 
@@ -120,6 +137,7 @@ std::size_t BroadPhase::left_out() const {
 std::size_t BroadPhase::make_room() {
   Implementation& self = *implementation_;
   self.pairs.reserve(std::max(8 * self.boxes.size() + 8, 2 * (self.pairs.size() + self.left_out)));
+  self.anew = true;
   return self.pairs.capacity();
 }
 

@@ -1,13 +1,15 @@
-// Broad phase: the pairs of bodies that are near enough to be queried. FCL's dynamic AABB tree over one box per body.
+// Broad phase: the pairs of bodies that may be near enough to be queried. FCL's dynamic AABB tree over one box per
+// body.
 //
 // World coordinates. Pairs are (i, j), i < j, in ascending order, so that later sums have an order. Pairs of two bodies
 // that cannot move are left out. find() allocates nothing: pairs for which there is no room are left out and counted.
-// A frame in which few bodies move costs what these cost: theirs are the only boxes and pairs that change.
+//
+// The tree's boxes are larger than they need to be. While a body stays in its box nothing changes, so a frame costs
+// what leaves its box. Which pairs are found besides those whose boxes meet depends on where the bodies came from.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,15 +34,11 @@ class BroadPhase {
   /// @pre body is one of those given to the constructor; X_WB is finite, its rotation unit; ahead is finite, not
   /// negative
   void set_pose(std::size_t body, const Pose& X_WB, double ahead);
-  /// All pairs; valid until the next call.
+  /// All pairs whose boxes meet, and others that are about as near as that; valid until the next call.
   [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find();
-  /// The pairs of these bodies alone, where no other has been placed since the last find(); valid until the next call.
-  /// @pre bodies are ascending, and can move
-  [[nodiscard]] const std::vector<std::pair<std::uint32_t, std::uint32_t>>& find_of(
-      std::span<const std::size_t> bodies);
-  /// Pairs for which the last find() had no room.
+  /// Pairs for which there was no room when they were found. The others stay as they are until make_room().
   [[nodiscard]] std::size_t left_out() const;
-  /// Makes room for twice as many as the last find() met. Returns for how many. Allocates.
+  /// Makes room for twice as many as there were; the next find() looks at all bodies. Returns for how many. Allocates.
   std::size_t make_room();
 
  private:

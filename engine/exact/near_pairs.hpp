@@ -45,15 +45,10 @@ class NearPairs {
     return true;
   }
 
-  /// The box around all blocks, as it is, and around an entity that along the mover's axes: of a tilted mover the box
-  /// along the base's axes is much larger.
-  [[nodiscard]] bool is_near_mover(const BoxTree::Node& entity) const {
-    const BoxTree::Node& whole = blocks_.nodes[0];
-    const Vector3d center = motion_.R.transpose() * (entity.center - motion_.p);
-    const Vector3d half = R_abs_.transpose() * entity.half;
-    for (int i = 0; i < 3; ++i)
-      if (std::abs(center[i] - whole.center[i]) > whole.half[i] + half[i] + motion_.margin) return false;
-    return true;
+  /// The box along the mover's axes around one of the base, mover's coordinates: of a tilted mover the box along the
+  /// base's axes is much larger than its own.
+  [[nodiscard]] PlacedBox seen_from_mover(const BoxTree::Node& box) const {
+    return {motion_.R.transpose() * (box.center - motion_.p), R_abs_.transpose() * box.half};
   }
 
   /// Of small bodies all that is near the other as a whole is compared with each other: a tree of a dozen items has
@@ -62,18 +57,19 @@ class NearPairs {
   void compare_all(const BoxTree& entities, Test& test) {
     const PlacedBox whole = placed(blocks_.nodes[0]);
     if (!are_near(whole, entities.nodes[0])) return;
-    if (!are_leaves_placed_)
-      for (std::size_t i = 0; i < blocks_.leaves.size(); ++i) boxes_[i] = placed(blocks_.nodes[blocks_.leaves[i]]);
-    are_leaves_placed_ = true;
+    const PlacedBox base = seen_from_mover(entities.nodes[0]);
     std::array<const BoxTree::Node*, kFew> near;
     std::size_t count = 0;
     for (const std::uint32_t leaf : entities.leaves)
-      if (are_near(whole, entities.nodes[leaf]) && is_near_mover(entities.nodes[leaf]))
+      if (are_near(whole, entities.nodes[leaf]) && are_near(seen_from_mover(entities.nodes[leaf]), blocks_.nodes[0]))
         near[count++] = &entities.nodes[leaf];
-    for (std::size_t i = 0; i < blocks_.leaves.size(); ++i) {
-      if (!are_near(boxes_[i], entities.nodes[0])) continue;
+    for (std::size_t i = 0; i < blocks_.leaves.size() && count > 0; ++i) {
+      const BoxTree::Node& leaf = blocks_.nodes[blocks_.leaves[i]];
+      if (!are_near(base, leaf)) continue;
+      const PlacedBox& block = placed_once(i, leaf);
+      if (!are_near(block, entities.nodes[0])) continue;
       for (std::size_t j = 0; j < count; ++j)
-        if (are_near(boxes_[i], *near[j])) test(blocks_.nodes[blocks_.leaves[i]].left, near[j]->left);
+        if (are_near(block, *near[j])) test(leaf.left, near[j]->left);
     }
   }
 
@@ -102,13 +98,15 @@ class NearPairs {
       }
     }
   }
-  /// Those of the first nodes are placed once, when they are first met.
   [[nodiscard]] PlacedBox placed_node(std::uint32_t node) {
-    if (node >= kFew) return placed(blocks_.nodes[node]);
-    const std::uint64_t bit = std::uint64_t{1} << node;
-    if ((is_placed_ & bit) == 0) boxes_[node] = placed(blocks_.nodes[node]);
+    return node < kFew ? placed_once(node, blocks_.nodes[node]) : placed(blocks_.nodes[node]);
+  }
+  /// Boxes that are asked for again are placed when they first are.
+  [[nodiscard]] const PlacedBox& placed_once(std::size_t slot, const BoxTree::Node& box) {
+    const std::uint64_t bit = std::uint64_t{1} << slot;
+    if ((is_placed_ & bit) == 0) boxes_[slot] = placed(box);
     is_placed_ |= bit;
-    return boxes_[node];
+    return boxes_[slot];
   }
 
   static constexpr std::size_t kFew = 64;
@@ -117,8 +115,7 @@ class NearPairs {
   const Matrix3d R_abs_;  ///< of motion.R
   const bool are_few_;
   std::array<PlacedBox, kFew> boxes_;  ///< of the leaves, if they are few; else of the first nodes
-  bool are_leaves_placed_ = false;
-  std::uint64_t is_placed_ = 0;  ///< a bit for each of the first nodes
+  std::uint64_t is_placed_ = 0;        ///< a bit for each of these
 };
 
 }  // namespace verisim::exact

@@ -110,8 +110,10 @@ Schema schema_of(const World& world, const Columns& columns) {
        Dtype::u64,
        1,
        "1",
-       "XXH3-64 of all values of /state in this row, seeded with the hash of the row before; then of its rows of "
-       "/state/links, seeded with that",
+       "XXH3-64, in three steps, each seeded with the one before, the first with the hash of the row before: of all "
+       "values of /state in this row but those of bodies, in runs of datasets that follow each other; of the XXH3-64 "
+       "of "
+       "each body's values, seed 0; of the row's rows of /state/links",
        0,
        {}});
   for (const Column& column : columns.other()) schema.add(column);
@@ -127,7 +129,8 @@ Recording::Recording(const World& world, const Stages& stages, const FrameCost& 
       other_numbers_(columns_.other()),
       table_numbers_(columns_.table()),
       schema_(schema_of(world, columns_)),
-      row_(schema_.row_bytes(), std::byte{0}) {
+      row_(schema_.row_bytes(), std::byte{0}),
+      body_hashes_(columns_.part_count(), 0) {
   VERISIM_ASSERT(schema_.state_bytes() == columns_.state_bytes());
   VERISIM_ASSERT(schema_.row_bytes() == columns_.state_bytes() + sizeof hash_ + columns_.other_bytes());
   VERISIM_ASSERT(schema_.table_row_bytes() == columns_.table_bytes());
@@ -141,9 +144,20 @@ void Recording::take(const World& world, const Stages& stages, FrameCost& cost) 
   columns_.put_other(at + sizeof hash_);
   check_finite(world);
   add_up(world, stages, cost);
-  hash_ = hash_bytes(row_.data(), columns_.state_bytes(), hash_);
-  hash_ = hash_bytes(table_.data(), table_.size(), hash_);
+  update_hash(world.busy);
   put_value(at, hash_);
+}
+
+/// @param written  the bodies whose values are new in this row
+void Recording::update_hash(std::span<const std::size_t> written) {
+  const std::byte* const row = row_.data();
+  columns_.each_written({},
+                        [&](std::size_t offset, std::size_t bytes) { hash_ = hash_bytes(row + offset, bytes, hash_); });
+  for (const std::size_t i : written)
+    columns_.of_part(
+        i, [&](std::size_t offset, std::size_t bytes) { body_hashes_[i] = hash_bytes(row + offset, bytes, 0); });
+  hash_ = hash_bytes(body_hashes_.data(), sizeof(std::uint64_t) * body_hashes_.size(), hash_);
+  hash_ = hash_bytes(table_.data(), table_.size(), hash_);
 }
 
 void Recording::check_finite(const World& world) const {

@@ -1,6 +1,6 @@
 // What a row of a run file holds (INTERFACES section 2), each fact declared once (base/columns.hpp), and the sums over
-// the run. The row's state bytes, then those of the frame's links, chained to the hash of the row before, are the state
-// hash.
+// the run. The state hash is that of the row's state, then of those of the frame's links, chained to the hash of the
+// row before. Of the state each body has a hash of its own, which stays while its values do: of many bodies few move.
 #pragma once
 
 #include <span>
@@ -38,6 +38,7 @@ class Recording {
 
  private:
   void take_links(const World& world, const Stages& stages);
+  void update_hash(std::span<const std::size_t> written);
   void check_finite(const World& world) const;
   void add_up(const World& world, const Stages& stages, const FrameCost& cost);
   void add_up_answers(const World& world, const Stages& stages);
@@ -47,6 +48,7 @@ class Recording {
   Schema schema_;
   std::vector<std::byte> row_, table_;
   std::vector<std::size_t> recorded_links_;  ///< whose rows the table holds
+  std::vector<std::uint64_t> body_hashes_;
   std::uint64_t hash_ = 0;
   Totals totals_;
   std::vector<PairTotals> pair_totals_;  ///< by link

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from batches import LONG, MANY, SANITIZED, Batches, children
+from batches import LIGHT, LIGHTER, LONG, MANY, SANITIZED, Batches, children
 
 
 # A calendar that jumps back by a day at every look; the steady clock goes on.
@@ -62,8 +62,7 @@ class Clocks(Batches):
 
 
 class Resumption(Batches):
-    LIGHT = ["--set", "bodies=false"]
-    ARGS = ["--vary", "speed=0.4,0.45,0.5", "--vary", "misbehave=no,error", "--repeat", "2", *(LIGHT if SANITIZED else [])]
+    ARGS = ["--vary", "speed=0.4,0.45,0.5", "--vary", "misbehave=no,error", "--repeat", "2", *LIGHTER]
 
     def test_any_jobs_shards_and_interruptions_give_one_index(self):
         self.batch_json("whole", *self.ARGS, "--jobs", 1)
@@ -138,7 +137,7 @@ class Resumption(Batches):
     def test_a_script_that_changes_meanwhile_is_refused(self):
         self.write("part.lua", "return 1")
         self.scenario = self.write("many.lua", MANY + "\nrequire 'part'\n")
-        args = ["--vary", "speed=0.4,0.5", "--jobs", 1, *self.LIGHT]
+        args = ["--vary", "speed=0.4,0.5", "--jobs", 1, *LIGHT]
         self.batch_json("b", *args)
         with self.database(os.path.join(self.path("b"), "index.sqlite")) as db:
             for table in ("run", "timing"):
@@ -157,7 +156,7 @@ class Resumption(Batches):
     def test_a_full_disk_is_exit_5_and_the_folder_goes_on(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
-        args = ["--vary", "speed=0.4,0.45,0.5", "--repeat", "8", *self.LIGHT]
+        args = ["--vary", "speed=0.4,0.45,0.5", "--repeat", "8", *LIGHT]
         done = self.batch("b", *args, preexec_fn=limit)
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn("cannot be written", done.stderr)

@@ -7,7 +7,7 @@ import sqlite3
 import time
 import unittest
 
-from batches import LONG, SANITIZED, Batches, children
+from batches import LIGHTER, LONG, SANITIZED, Batches, children
 from program import SOURCE
 
 
@@ -55,7 +55,7 @@ class Designs(Batches):
         self.assertEqual(one["state_hash"], rows[1]["state_hash"])
 
     def test_draws_from_distributions_are_the_same_each_time(self):
-        args = ["--random", 4, "speed=0.4..0.5", "voxelsize=zone:H7:25mm", "--repeat", 2]
+        args = ["--random", 4, "speed=0.4..0.5", "voxelsize=zone:H7:25mm", "--repeat", 2, *LIGHTER]
         self.batch_json("b", *args)
         self.batch_json("c", *args, "--jobs", 1)
         self.assertEqual(self.index("b"), self.index("c"))
@@ -91,13 +91,14 @@ class Designs(Batches):
             self.assertIn(wanted, manifest)
 
     def test_the_summary_lines_up_and_has_intervals(self):
-        text = self.batch("b", "--vary", "speed=0.4,0.5", "--repeat", 6).stdout
+        args = ["--vary", "speed=0.4,0.5", "--repeat", 6, *LIGHTER]
+        text = self.batch("b", *args).stdout
         lines = text.splitlines()
         self.assertIn("12 runs: 12 done", lines[0])
         self.assertEqual(len({line.index(w) + len(w) for line, w in zip(lines[1:2], ["mean or share"])}), 1)
-        again = self.batch("b", "--vary", "speed=0.4,0.5", "--repeat", 6).stdout
+        again = self.batch("b", *args).stdout
         self.assertEqual(text, again, "the same digits every time")
-        group = self.batch_json("b", "--vary", "speed=0.4,0.5", "--repeat", 6)["groups"][0]
+        group = self.batch_json("b", *args)["groups"][0]
         self.assertEqual(group["parameters"], {"speed": 0.4})
         self.assertEqual(sum(o["count"] for o in group["outcomes"].values()), 6)
         for outcome in group["outcomes"].values():

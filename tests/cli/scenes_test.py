@@ -143,12 +143,12 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "e837f7a61b241402"),
-    ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "0e341c7246fda51e"),
-    ("peg_in_hole_step", ["--duration", "3"], "246c5fc06797164b"),
-    ("head_tracking", [], "c861fa5030cf1fa9"),
-    ("slide", [], "12141b5fe201e045"),
-    ("stack", [], "c51f094c8fe76c4a"),
+    ("peg_in_hole", ["--duration", "3"], "f527f89554cead25"),
+    ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "b5a1df3b00a7e5f1"),
+    ("peg_in_hole_step", ["--duration", "3"], "1c11014ac055c939"),
+    ("head_tracking", [], "832392ba6624aa23"),
+    ("slide", [], "66f7220e9ed64da6"),
+    ("stack", [], "ed20b4e647556a2d"),
 ]
 
 if __name__ == "__main__":

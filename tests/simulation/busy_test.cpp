@@ -1,12 +1,13 @@
 // A frame looks only at bodies that move, or are near one that does; what it records of all others is still true.
 // Boxes near each other, taken, let go and put elsewhere at random; after every frame each row is held against the
-// bodies themselves, and the pairs against the boxes around them.
+// bodies themselves, the pairs against the boxes around them, and the state hash against the whole row.
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <map>
 #include <set>
 
+#include "engine/base/hash.hpp"
 #include "engine/base/random.hpp"
 #include "tests/simulation/scenes.hpp"
 
@@ -52,6 +53,36 @@ class Rows {
     }
     ADD_FAILURE() << "no column " << path;
     return {};
+  }
+  /// As the description of /state/hash says it, from all bytes of the row.
+  std::uint64_t hash(std::uint64_t before) {
+    row_.resize(schema_.row_bytes());
+    simulation_.write_row(row_.data());
+    std::string run;  // of datasets that follow each other
+    std::map<std::string, std::string> of_body;
+    std::uint64_t hash = before;
+    const auto end_run = [&] {
+      if (!run.empty()) hash = hash_bytes(run.data(), run.size(), hash);
+      run.clear();
+    };
+    for (const Column& column : schema_.columns()) {
+      if (!column.path.starts_with("/state/") || column.path == "/state/hash") break;
+      const std::string bytes(reinterpret_cast<const char*>(&row_[column.offset]), column.bytes());
+      if (column.path.starts_with("/state/body/")) {
+        of_body[column.path.substr(0, column.path.rfind('/'))] += bytes;
+        end_run();
+      } else {
+        run += bytes;
+      }
+    }
+    end_run();
+    std::vector<std::uint64_t> hashes;
+    for (std::size_t i = 0; i < simulation_.body_count(); ++i) {
+      const std::string& bytes = of_body.at("/state/body/box" + std::to_string(i));
+      hashes.push_back(hash_bytes(bytes.data(), bytes.size(), 0));
+    }
+    hash = hash_bytes(hashes.data(), 8 * hashes.size(), hash);
+    return hash_bytes(simulation_.table_rows().data(), simulation_.table_rows().size(), hash);
   }
   /// Of the table's rows of this frame.
   [[nodiscard]] Pairs pairs() const {
@@ -163,7 +194,9 @@ TEST(Busy, BodiesAreRecordedAsTheyAreAndPairsWhereTheyMeet) {
     simulation.prepare();
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) poses.push_back(simulation.body_pose(i));
+    const std::uint64_t before = simulation.state_hash();
     simulation.step();
+    ASSERT_EQ(simulation.state_hash(), rows.hash(before)) << "frame " << frame;
     const Pairs found = rows.pairs();
     for (const auto& pair : pairs_near(scene, poses, 0))
       ASSERT_TRUE(found.contains(pair)) << pair.first << " " << pair.second << " in frame " << frame;

@@ -59,14 +59,16 @@ double speed_of(const Body& body, const Vector6d& u) {
   return u.head<3>().norm() + u.tail<3>().norm() * body.bounds_B.size().norm();
 }
 
-/// The box around what the search looks at, body coordinates.
+/// The box around all that rows are found on, body coordinates. It is the body's own: those of the search's blocks are
+/// larger, by half a segment.
 Bounds box_of(const exact::ExactBody& body) {
   Bounds box;
-  for (const exact::BoxTree* tree : {&body.face_tree, &body.block_tree}) {
-    if (tree->nodes.empty()) continue;
-    box.include(tree->nodes[0].center - tree->nodes[0].half);
-    box.include(tree->nodes[0].center + tree->nodes[0].half);
-  }
+  const auto include = [&](const Bounds& one) {
+    box.min = box.min.cwiseMin(one.min);
+    box.max = box.max.cwiseMax(one.max);
+  };
+  for (const exact::ExactFace& face : body.faces) include(face.bounds);
+  for (const exact::ExactEdge& edge : body.edges) include(edge.bounds);
   return box;
 }
 

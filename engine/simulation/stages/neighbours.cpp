@@ -64,8 +64,6 @@ Neighbours::Neighbours(const World& world)
       boxes_(world.bodies.size()),
       ahead_(world.bodies.size()),
       told_(world.bodies.size(), false),
-      movable_(static_cast<std::size_t>(
-          std::count_if(world.bodies.begin(), world.bodies.end(), [](const Body& body) { return body.can_move; }))),
       is_placed_(world.bodies.size()) {
   VERISIM_ASSERT(world.bodies.size() < (std::size_t{1} << 32));
   moved_.reserve(world.bodies.size());
@@ -90,10 +88,14 @@ void Neighbours::watch(const World& world, Notes& notes) {
 }
 
 void Neighbours::look_around(World& world) {
-  if (std::exchange(anew_, false))
-    find_all(world);
-  else
-    find_of_moving(world);
+  if (std::exchange(anew_, false)) {
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+      if (world.bodies[i].can_move) is_placed_.add(i);
+  }
+  for (const std::size_t i : moved_) is_placed_.add(i);
+  for (const std::size_t i : world.moving) is_placed_.add(i);
+  find_of_placed(world);
+  is_placed_.clear();
   moved_ = world.moving;
   world.near_links.clear();
   strangers_.clear();
@@ -106,27 +108,17 @@ void Neighbours::look_around(World& world) {
   }
 }
 
-void Neighbours::find_all(const World& world) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].can_move) place(world, i);
-  near_.clear();
-  merge_near(broad_phase_.find());
-}
-
 /// What stood still is as near to each other as it was.
-void Neighbours::find_of_moving(const World& world) {
-  for (const std::size_t i : moved_) is_placed_.add(i);
-  for (const std::size_t i : world.moving) is_placed_.add(i);
-  std::erase_if(near_, [&](const NearPair& pair) { return is_placed_.has(pair.first) || is_placed_.has(pair.second); });
+void Neighbours::find_of_placed(const World& world) {
+  const auto is_of_placed = [&](const NearPair& pair) {
+    return is_placed_.has(pair.first) || is_placed_.has(pair.second);
+  };
   placed_.clear();
-  is_placed_.move_to(placed_);
+  is_placed_.append_to(placed_);
   for (const std::size_t i : placed_) place(world, i);
-  merge_near(placed_.size() == movable_ ? broad_phase_.find() : broad_phase_.find_of(placed_));
-}
-
-/// Adds those of the tree's pairs that are near: it has spheres' boxes around what is turned.
-void Neighbours::merge_near(const std::vector<NearPair>& found) {
-  std::swap(near_, stood_);
+  stood_.clear();
+  for (const NearPair& pair : near_)
+    if (!is_of_placed(pair)) stood_.push_back(pair);
   near_.clear();
   left_out_ = 0;
   auto next = stood_.begin();
@@ -136,9 +128,9 @@ void Neighbours::merge_near(const std::vector<NearPair>& found) {
     else
       ++left_out_;
   };
-  for (const auto& pair : found) {
+  for (const NearPair& pair : broad_phase_.find()) {
     const auto [i, j] = pair;
-    if (gap(boxes_[i], boxes_[j]) > ahead_[i] + ahead_[j]) continue;
+    if (!is_of_placed(pair) || gap(boxes_[i], boxes_[j]) > ahead_[i] + ahead_[j]) continue;
     for (; next != stood_.end() && *next < pair; ++next) add(*next);
     add(pair);
   }

@@ -44,9 +44,7 @@ class Neighbours {
 
  private:
   void place(const World& world, std::size_t body);
-  void find_all(const World& world);
-  void find_of_moving(const World& world);
-  void merge_near(const std::vector<NearPair>& found);
+  void find_of_placed(const World& world);
 
   struct Known {
     std::uint64_t pair;  ///< first << 32 | second
@@ -58,10 +56,9 @@ class Neighbours {
   std::vector<bool> told_;     ///< of bodies: see watch
   std::vector<Known> known_;   ///< ascending
   bool anew_ = true;
-  std::size_t movable_;              ///< bodies that can move
-  std::vector<std::size_t> moved_;   ///< bodies that moved when it last looked; ascending
-  std::vector<std::size_t> placed_;  ///< these and those that move now
-  IndexSet is_placed_;
+  std::vector<std::size_t> moved_;      ///< bodies that moved when it last looked; ascending
+  std::vector<std::size_t> placed_;     ///< these and those that move now
+  IndexSet is_placed_;                  ///< the same, while it looks
   std::vector<NearPair> near_, stood_;  ///< ascending; those of what did not move
   std::vector<NearPair> strangers_;
   std::size_t room_ = 0;      ///< for near pairs
