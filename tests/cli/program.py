@@ -70,8 +70,10 @@ class ProgramTest(unittest.TestCase):
             f.write(content)
         return self.path(name)
 
+    PATIENCE = 300  # s, for one program
+
     def run_program(self, *args, **options):
-        options.setdefault("timeout", 300)
+        options.setdefault("timeout", self.PATIENCE)
         return subprocess.run([VERISIM, *map(str, args)], capture_output=True, text=True, cwd=self.folder, **options)
 
     def succeed(self, *args, **options):

@@ -269,6 +269,7 @@ class AutoKeepsItsBounds(ProgramTest):
     """Of trials that the table was not made from, at least 95 % keep the bounds: other seeds are other tremors, and the
     hand aims and tilts otherwise in each."""
 
+    PATIENCE = 3600 if LONG else 300
     ERROR, BUDGET = 2, 100  # N, us: the pin jams in some trials, and its force is then chaotic
 
     def setUp(self):

@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from scene_test import SceneTest
+from scene_test import LONG, SceneTest, some_of
 
 G = 9.81  # m/s^2
 EXACT = {"hybrid": "exact", "integrator": "implicit"}
@@ -41,6 +41,20 @@ class ClosedForms(SceneTest):
                 period = 2 * math.pi / a * math.sqrt(0.08 / G)
                 self.assertAlmostEqual(2 * np.diff(crossings).mean() / period, 1, delta=1e-4)
 
+
+    def test_an_insertion_converges_with_the_step(self):
+        """Of first order, in the long form down to steps of 12.5 us: where the pin ends and what pushes on it there."""
+        for sides, clearance in some_of(((0, 1e-4), (8, 2e-5))):
+            with self.subTest(sides=sides, clearance=clearance):
+                places, forces = [], []
+                steps = 4e-4 * 0.5**np.arange(6 if LONG else 3)
+                for step in steps:
+                    peg = self.run_scene("prism_entry.lua", "peg", n=sides, c=clearance, tremor=0, timestep=step)
+                    last = round(0.5 / step)
+                    places.append(peg.pose[-last, 2])
+                    forces.append(np.linalg.norm(peg.force[-last:], axis=1).mean())
+                self.assertLess((np.abs(np.diff(places)) / steps[:-1]).max(), 0.02)  # m/s
+                self.assertLess(np.ptp(forces), 1e-3 * forces[0])
 
     @staticmethod
     def wedged_at(R, r, height):
