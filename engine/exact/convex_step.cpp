@@ -324,7 +324,7 @@ int ConvexStep::solve(double dt, double threshold) {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row& row = rows_[r];
     rests_[r].force = rests_[r].before_rebound = -row.k * row.pressed(row.z);
-    rests_[r].end_gap = row.z;
+    rests_[r].end_gap = row.g + (row.z - row.g) / rests_[r].stretch;
   }
   if (hit_ && begin_rebound(dt)) {
     iterations += minimize(dt);

@@ -16,7 +16,8 @@
 // that were hit ask for J w >= e v instead: Newton's law of impact, as in Moreau and Jean's time stepping (Acary and
 // Brogliato, "Numerical Methods for Nonsmooth Dynamical Systems", 2008, chapter 10). v is the speed of approach at the
 // start of the step, e the restitution.
-//   - A row with e > 0 is hit if v is above the threshold speed and its gap is at least -v dt / 4.
+//   - A row is hit if v is above the threshold speed and its gap is at least -v dt / 4; with e = 0 only where the step
+//     is too short for implicit Euler to do the same (see Damping).
 //     A body that lies has no speed of approach; one that slides along a curved path has, but its gap will be half of v
 //     dt below zero (ContactRow::curving).
 //   - A row that was open and closes only because of a blow is left out: the next step finds it hit. So a blow is
@@ -27,12 +28,15 @@
 //   - What w has more than u is an impulse at the end of the step, when the bodies have moved: it acts at one place for
 //     both, the row's point moved by the mean of their velocities. So u, w and what is between them keep the angular
 //     momentum, too.
-// Friction. A grip is a quadratic term more, dt c/2 |w|^2, of the velocity w of one body against the other at one
-// point: along two tangents, and of their spin about the normal. It takes energy and keeps momentum. How large c is the
-// caller says. Late rows, of more than kDenseMax bodies, with restitution, or of a pair that began inside of each
-// other. A row that overlaps by more than the pair did before and the approach explains was not there when it should
-// have been. Nothing compressed it, so it has no energy to give: it moves the bodies apart, no faster than kPushOut,
-// and asks for J w >= 0.
+// Damping. Springs alone are elastic. What keeps a contact from ringing is the step itself: implicit Euler's damping,
+// which fades where the step is no longer long beside sqrt(m / k), in short steps and soft contacts. There a row that
+// overlaps is damped, with the time tau = max(0, kDamped sqrt(m / k) - dt): its force is -k (g + (dt + tau) J u). k: of
+// all rows of the two bodies, m: of the lighter one. Friction. A grip is a quadratic term more, dt c/2 |w|^2, of the
+// velocity w of one body against the other at one point: along two tangents, and of their spin about the normal. It
+// takes energy and keeps momentum. How large c is the caller says. Late rows, of more than kDenseMax bodies, with
+// restitution, or of a pair that began inside of each other. A row that overlaps by more than the pair did before and
+// the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give: it
+// moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
 //
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
@@ -117,10 +121,10 @@ class ConvexStep {
   /// gives acts at the end.
   [[nodiscard]] const Vector3d& shift_moment(int body) const;
   /// Normal force of the i-th row added [N, >= 0].
-  [[nodiscard]] double force(std::size_t row) const { return part(row) * row_of(row).force; }
+  [[nodiscard]] double force(std::size_t row) const { return part(row) * row_of(row).stretch * row_of(row).force; }
   /// How much more the rebound made of that, and by how much the place has moved where it acts [N, m].
   [[nodiscard]] double rebound(std::size_t row) const {
-    return part(row) * (row_of(row).force - row_of(row).before_rebound);
+    return part(row) * row_of(row).stretch * (row_of(row).force - row_of(row).before_rebound);
   }
   [[nodiscard]] const Vector3d& moved(std::size_t row) const { return row_of(row).moved; }
   /// Of a grip on its second body, about the grip's point.
@@ -173,6 +177,7 @@ class ConvexStep {
     Vector3d moved = Vector3d::Zero();                                 ///< m, of its point until the rebound
     std::array<Vector3d, 2> turn{Vector3d::Zero(), Vector3d::Zero()};  ///< what the Jacobians have gained by that
     double asked = kNothing;  ///< m/s, the rate at least; kNothing: neither hit nor late
+    double stretch = 1;       ///< (dt + tau) / dt: by so much the Jacobians are longer and the force is smaller
     bool late = false;
   };
   /// A row as it was added. Several may be one row of the problem: where the ends of two edges and the corner between
@@ -212,7 +217,10 @@ class ConvexStep {
   [[nodiscard]] std::size_t same_row(std::size_t begin) const;
   int minimize(double dt);
   void note_hits(double dt, double threshold);
-  void note_hits(const Run& run, double dt, double threshold);
+  void note_hits(const Run& run, double dt, double threshold, double tau);
+  [[nodiscard]] double lighter_mass(const Run& run) const;
+  [[nodiscard]] double damping_time(const Run& run, double dt) const;
+  void damp(const Run& run, double dt, double tau);
   [[nodiscard]] bool begin_rebound(double dt);
   void move_rows(double dt);
   void end_rebound();

@@ -246,7 +246,7 @@ double unbalanced(const ConvexStep& step, const std::vector<Matrix6d>& M, const 
     const Wrench w = step.wrench(static_cast<int>(i));
     Vector6d impulse;
     impulse << kStep * w.force, kStep * w.torque;
-    most = std::max(most, (impulse - M[i] * (step.velocity(static_cast<int>(i)) - u0[i])).norm());
+    most = std::max(most, (impulse - M[i] * (step.velocity_after(static_cast<int>(i)) - u0[i])).norm());
   }
   return most / scale;
 }

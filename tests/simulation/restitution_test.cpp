@@ -102,6 +102,56 @@ TEST(Ball, ReboundsWithThatPartOfItsSpeedOfApproach) {
           }
 }
 
+/// What is dropped by 5 mm is followed for 30 ms after it touches.
+struct Landing {
+  double approach = 0, rebound = 0;  ///< m/s, largest upwards after it touched
+  double mass = 0;                   ///< kg
+  double uneven = 0;                 ///< of the weight: how far its force is from it in the last 5 ms
+};
+Landing landing_of(Scene scene) {
+  Simulation simulation(std::move(scene), {});
+  const double weight = simulation.mass(kBody) * kGravity;
+  const double dt = simulation.dt();
+  Landing landing;
+  landing.mass = simulation.mass(kBody);
+  for (double since = 0; since < 0.03;) {
+    const double last = simulation.body_twist(kBody).linear.z();
+    simulation.prepare();
+    simulation.step();
+    const double force = simulation.body_force(kBody).force.z();
+    if (landing.approach == 0 && force > 0) landing.approach = -last;
+    if (landing.approach == 0) continue;
+    since += dt;
+    landing.rebound = std::max(landing.rebound, simulation.body_twist(kBody).linear.z());
+    if (since > 0.025) landing.uneven = std::max(landing.uneven, std::abs(force / weight - 1));
+  }
+  return landing;
+}
+
+// Without restitution nothing rebounds, and what lies does not ring, however short the step is beside the time of a
+// contact's spring and however soft the contact.
+TEST(Landing, WithoutRestitutionIsInelasticAtAnyStepAndStiffness) {
+  for (const BodyDescription* body : {&ball(0.005), &ball(0.02), &box()})
+    for (const double density : test::some_of({1000.0, 1.0, 1e6}))
+      for (const double dt : {1e-3, 1e-4, 1e-5})
+        for (const double stiffness : test::some_of({1.15e11, 1e6, 1e9, 1e13})) {
+          const double half = body == &box() ? 0.015 : body == &ball(0.02) ? 0.02 : 0.005;
+          Scene scene = above_plate(*body, half + 0.005);
+          scene.bodies[kBody].density = density;
+          scene.parameters.timestep = dt;
+          scene.parameters.exact_stiffness = stiffness;
+          const Landing landing = landing_of(std::move(scene));
+          SCOPED_TRACE(testing::Message() << body->name << " of " << 2 * half << " m, density " << density << ", dt "
+                                          << dt << ", stiffness " << stiffness);
+          ASSERT_NEAR(landing.approach, std::sqrt(2 * kGravity * 0.005), 2 * kGravity * dt);
+          EXPECT_LE(landing.rebound, 0.1 * landing.approach);
+          const double yields = std::sqrt(landing.mass / (0.004 * stiffness));  // s, at a point
+          if (yields < 0.001) {
+            EXPECT_LE(landing.uneven, tolerance(0.01));
+          }
+        }
+}
+
 // No bounce is forever: a ball and a box that rebound well come to rest, and what rests does not buzz. The force has
 // the roundings of a gap (1e-15 m) times the stiffness, with and without restitution.
 TEST(Rest, StaysRestWhateverTheRestitution) {
