@@ -1,12 +1,19 @@
 """Writes the ctest entries of a test program: list_tests.py PROGRAM OUTPUT.cmake. The name of an entry begins with the
-file that the test stands in: memo_test.Suite.Case.
+file that the test stands in: memo_test.Suite.Case. A case with parameters is one entry, so that its instances share what
+they compare themselves with; where some may be skipped each is an entry, for ctest knows an entry as skipped or not.
 """
 
+import functools
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
+
+
+@functools.cache
+def may_skip(file):
+    return "GTEST_SKIP" in (pathlib.Path(__file__).parents[1] / file).read_text()
 
 
 def main():
@@ -15,18 +22,20 @@ def main():
         listed = pathlib.Path(folder) / "tests.json"
         subprocess.run([program, "--gtest_list_tests", f"--gtest_output=json:{listed}"], check=True, capture_output=True)
         suites = json.loads(listed.read_text())["testsuites"]
-    entries, file_of = [], {}
+    file_of, entries = {}, {}
     for suite in suites:
         for test in suite["testsuite"]:
             case, file = f"{suite['name']}.{test['name']}", pathlib.Path(test["file"])
             if case in file_of:
                 sys.exit(f"{case} stands in {file_of[case]} and in {file}; one of them needs another name")
             file_of[case] = file
-            name = f"{file.stem}.{case}"
-            entries.append(f'add_test("{name}" "{program}" "--gtest_filter={case}")\n'
-                           f'set_tests_properties("{name}" PROPERTIES TIMEOUT 600'
-                           ' SKIP_REGULAR_EXPRESSION "\\\\[  SKIPPED \\\\]")\n')
-    pathlib.Path(output).write_text("".join(entries))
+            whole, parameter, _ = case.rpartition("/")
+            together = parameter and "/" in test["name"] and not may_skip(file)
+            name = f"{file.stem}.{whole if together else case}"
+            entries[name] = (f'add_test("{name}" "{program}" "--gtest_filter={whole + "/*" if together else case}")\n'
+                             f'set_tests_properties("{name}" PROPERTIES TIMEOUT 600'
+                             + ("" if together else ' SKIP_REGULAR_EXPRESSION "\\\\[  SKIPPED \\\\]"') + ")\n")
+    pathlib.Path(output).write_text("".join(entries.values()))
 
 
 if __name__ == "__main__":
