@@ -1,5 +1,5 @@
 # verisim_test(NAME [ALONE] [LINKS targets...] [SOURCES files...]): tests/<folder>/NAME.cpp becomes part of the folder's test
-# program, build/tests/<folder>_tests, and ctest knows each of its cases as NAME.Suite.Case. One program per folder, because
+# program, build/tests/<folder>_tests, and ctest knows each of its cases as NAME.Suite.Case (list_tests.py). One program per folder, because
 # linking and reading the same headers for every file cost more than compiling the tests. Each file has a namespace of its
 # own name, so that files do not see each other. ALONE: a program of its own, for what replaces malloc or kills itself.
 find_package(GTest REQUIRED)
