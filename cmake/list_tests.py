@@ -1,6 +1,7 @@
 """Writes the ctest entries of a test program: list_tests.py PROGRAM OUTPUT.cmake. The name of an entry begins with the
 file that the test stands in: memo_test.Suite.Case. A case with parameters is one entry, so that its instances share what
-they compare themselves with; where some may be skipped each is an entry, for ctest knows an entry as skipped or not.
+they compare themselves with; where a file skips tests each is an entry, for ctest knows an entry as skipped or not. An
+instance that is skipped all the same fails its entry: nothing is skipped unseen.
 """
 
 import functools
@@ -12,7 +13,7 @@ import tempfile
 
 
 @functools.cache
-def may_skip(file):
+def skips(file):
     return "GTEST_SKIP" in (pathlib.Path(__file__).parents[1] / file).read_text()
 
 
@@ -30,11 +31,11 @@ def main():
                 sys.exit(f"{case} stands in {file_of[case]} and in {file}; one of them needs another name")
             file_of[case] = file
             whole, parameter, _ = case.rpartition("/")
-            together = parameter and "/" in test["name"] and not may_skip(file)
+            together = parameter and "/" in test["name"] and not skips(file)
             name = f"{file.stem}.{whole if together else case}"
             entries[name] = (f'add_test("{name}" "{program}" "--gtest_filter={whole + "/*" if together else case}")\n'
                              f'set_tests_properties("{name}" PROPERTIES TIMEOUT 600'
-                             + ("" if together else ' SKIP_REGULAR_EXPRESSION "\\\\[  SKIPPED \\\\]"') + ")\n")
+                             f' {"FAIL" if together else "SKIP"}_REGULAR_EXPRESSION "\\\\[  SKIPPED \\\\]")\n')
     pathlib.Path(output).write_text("".join(entries.values()))
 
 

@@ -1,7 +1,8 @@
 # verisim_test(NAME [ALONE] [LINKS targets...] [SOURCES files...]): tests/<folder>/NAME.cpp becomes part of the folder's test
-# program, build/tests/<folder>_tests, and ctest knows each of its cases as NAME.Suite.Case (list_tests.py). One program per folder, because
-# linking and reading the same headers for every file cost more than compiling the tests. Each file has a namespace of its
-# own name, so that files do not see each other. ALONE: a program of its own, for what replaces malloc or kills itself.
+# program, build/tests/<folder>_tests, and ctest knows each of its cases as NAME.Suite.Case (list_tests.py). One program per
+# folder, because linking and reading the same headers for every file cost more than compiling the tests. Each file has a
+# namespace of its own name, so that files do not see each other. ALONE: a program of its own, for what replaces malloc or
+# kills itself.
 find_package(GTest REQUIRED)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(VERISIM_SHARED_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "Recordings and models of other people; tests that need them say when they are absent")

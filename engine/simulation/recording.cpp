@@ -110,10 +110,9 @@ Schema schema_of(const World& world, const Columns& columns) {
        Dtype::u64,
        1,
        "1",
-       "XXH3-64, in three steps, each seeded with the one before, the first with the hash of the row before: of all "
+       "XXH3-64 in three steps, each seeded with the one before, the first with the hash of the row before: of the "
        "values of /state in this row but those of bodies, in runs of datasets that follow each other; of the XXH3-64 "
-       "of "
-       "each body's values, seed 0; of the row's rows of /state/links",
+       "(seed 0) of each body's values; of the row's rows of /state/links",
        0,
        {}});
   for (const Column& column : columns.other()) schema.add(column);

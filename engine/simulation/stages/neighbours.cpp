@@ -108,7 +108,8 @@ void Neighbours::look_around(World& world) {
   }
 }
 
-/// What stood still is as near to each other as it was.
+/// What stood still is as near to each other as it was. The broad phase finds more than what is near: its boxes are
+/// larger.
 void Neighbours::find_of_placed(const World& world) {
   const auto is_of_placed = [&](const NearPair& pair) {
     return is_placed_.has(pair.first) || is_placed_.has(pair.second);
