@@ -27,20 +27,24 @@ T by_length(T sanitized, T usual, T in_full) {
   return is_long() ? in_full : kSanitized ? sanitized : usual;
 }
 
-/// All of them; under the sanitizers every third, the first among them.
+/// All of them; under the sanitizers every third, or one in `every`, the first among them.
 template <typename T>
-std::vector<T> some_of(std::span<const T> all) {
+std::vector<T> some_of(std::span<const T> all, std::size_t every = 3) {
   std::vector<T> chosen;
-  for (std::size_t i = 0; i < all.size(); i += kSanitized ? 3 : 1) chosen.push_back(all[i]);
+  for (std::size_t i = 0; i < all.size(); i += kSanitized ? every : 1) chosen.push_back(all[i]);
   return chosen;
 }
 template <typename T>
-std::vector<T> some_of(std::initializer_list<T> all) {
-  return some_of(std::span<const T>(all.begin(), all.size()));
+std::vector<T> some_of(const std::vector<T>& all, std::size_t every = 3) {
+  return some_of(std::span<const T>(all), every);
+}
+template <typename T>
+std::vector<T> some_of(std::initializer_list<T> all, std::size_t every = 3) {
+  return some_of(std::span<const T>(all.begin(), all.size()), every);
 }
 template <typename T, std::size_t N>
-std::vector<T> some_of(const T (&all)[N]) {
-  return some_of(std::span<const T>(all));
+std::vector<T> some_of(const T (&all)[N], std::size_t every = 3) {
+  return some_of(std::span<const T>(all), every);
 }
 
 }  // namespace verisim::test

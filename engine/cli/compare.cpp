@@ -46,36 +46,36 @@ int tell(const compare::Comparison& comparison, const CompareOptions& o) {
   return 0;
 }
 
-enum class Kind { run, batch, benchmarks };
+enum class InputKind { run, batch, benchmarks };
 
-Kind kind_of(const std::string& path) {
-  if (other_than_plain(path) == "a folder") return Kind::batch;
-  return compare::looks_like_json(path) ? Kind::benchmarks : Kind::run;
+InputKind kind_of(const std::string& path) {
+  if (other_than_plain(path) == "a folder") return InputKind::batch;
+  return compare::looks_like_json(path) ? InputKind::benchmarks : InputKind::run;
 }
 
-const char* name_of(Kind kind) {
+const char* name_of(InputKind kind) {
   switch (kind) {
-    case Kind::run:
+    case InputKind::run:
       return "a run file";
-    case Kind::batch:
+    case InputKind::batch:
       return "a batch folder";
-    case Kind::benchmarks:
+    case InputKind::benchmarks:
       return "JSON of benchmarks";
   }
   return "";
 }
 
 compare::Comparison compared(const std::string& a, const std::string& b) {
-  const Kind kind = kind_of(a), other = kind_of(b);
+  const InputKind kind = kind_of(a), other = kind_of(b);
   if (kind != other)
     fail(ErrorKind::input, "{} looks like {}, {} like {}; compare two of a kind", a, name_of(kind), b, name_of(other));
   const compare::Bounds& bounds = compare::built_in_bounds();
   switch (kind) {
-    case Kind::run:
+    case InputKind::run:
       return compare::compare_runs(a, b, bounds);
-    case Kind::batch:
+    case InputKind::batch:
       return compare::compare_batches(a, b, bounds);
-    case Kind::benchmarks:
+    case InputKind::benchmarks:
       return compare::compare_benchmarks(a, b, bounds);
   }
   return {};

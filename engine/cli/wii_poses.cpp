@@ -34,9 +34,10 @@ double number_at(const std::string& where, const std::string& what, std::string 
 }
 
 /// A row by the names of its columns.
-class Row {
+class ReportRow {
  public:
-  Row(std::string where, const std::map<std::string, std::size_t>& columns, const std::vector<std::string>& fields)
+  ReportRow(std::string where, const std::map<std::string, std::size_t>& columns,
+            const std::vector<std::string>& fields)
       : where_(std::move(where)), columns_(columns), fields_(fields) {}
 
   [[nodiscard]] bool has(const std::string& name) const { return columns_.contains(name); }
@@ -143,7 +144,7 @@ std::vector<wii::Report> read_tum(const std::string& file, const std::string& co
     const std::string where = fmt::format("{}:{}", file, line_number);
     if (fields.size() != kColumns.size())
       fail(ErrorKind::input, "{}: has {} numbers, but TUM's form has 8: t x y z qx qy qz qw", where, fields.size());
-    reports.push_back(Row(where, kColumns, fields).report());
+    reports.push_back(ReportRow(where, kColumns, fields).report());
   }
   return reports;
 }
@@ -189,7 +190,7 @@ std::vector<wii::Report> read_poses(const std::string& file, const std::string& 
   const std::map<std::string, std::size_t> where = find_columns(file, rows.front().fields, columns);
   std::vector<wii::Report> reports;
   for (std::size_t i = 1; i < rows.size(); ++i)
-    reports.push_back(Row(fmt::format("{}:{}", file, rows[i].line), where, rows[i].fields).report());
+    reports.push_back(ReportRow(fmt::format("{}:{}", file, rows[i].line), where, rows[i].fields).report());
   return reports;
 }
 
@@ -206,7 +207,7 @@ wii::Report parse_pose_line(const std::string& where, const std::string& line) {
     fields.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
-  return Row(where, kColumns, fields).report();
+  return ReportRow(where, kColumns, fields).report();
 }
 
 }  // namespace verisim::cli

@@ -18,7 +18,7 @@ std::uint64_t milliseconds(const char* what, double s, double least) {
   return static_cast<std::uint64_t>(std::llround(s * 1000));
 }
 
-bool is_finite(const PlanarTwist& v) {
+bool are_finite(const PlanarTwist& v) {
   return std::isfinite(v.vx) && std::isfinite(v.vy) && std::isfinite(v.omega);
 }
 
@@ -81,7 +81,7 @@ void RobotServer::set_gain(double gain) {
 }
 
 PlanarTwist RobotServer::within_reach(const PlanarTwist& velocity) const {
-  VERISIM_ASSERT(is_finite(velocity));
+  VERISIM_ASSERT(are_finite(velocity));
   // The fastest wheel's rim [m/s]: no infinity on the way, whatever the velocity.
   const double arm = settings_.geometry.half_base + settings_.geometry.half_track;
   const double largest = std::max({std::abs(velocity.vx), std::abs(velocity.vy), arm * std::abs(velocity.omega)});
@@ -96,7 +96,7 @@ PlanarTwist RobotServer::within_reach(const PlanarTwist& velocity) const {
 PlanarTwist RobotServer::wanted(double error_x, double error_y) {
   if (!is_running_) return {};
   const PlanarTwist velocity{gain_ * error_x, gain_ * error_y, 0};
-  if (is_finite(velocity)) {
+  if (are_finite(velocity)) {
     good_ = within_reach(velocity);
     good_at_ = now_;
     reaches_limit_ = good_.vx != velocity.vx || good_.vy != velocity.vy;
@@ -109,7 +109,7 @@ PlanarTwist RobotServer::wanted(double error_x, double error_y) {
 
 void RobotServer::command(const PlanarTwist& velocity) {
   if (!is_running_) return;
-  if (!is_finite(velocity)) {
+  if (!are_finite(velocity)) {
     ++counts_.refused;
     return;
   }

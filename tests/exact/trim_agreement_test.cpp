@@ -317,7 +317,7 @@ TEST(TrimAgreementOfTori, RasterAndCrossingsAnswerAlikeAwayFromBorders) {
 
 // The pole of a recovered ball is where its fit has put it: no corner of a triangle is there, nor need one be near.
 TEST(TrimAgreementOfRecoveredBalls, RasterAndCrossingsAnswerAlikeUpToThePoles) {
-  for (const double step : {0.1, 0.45}) {
+  for (const double step : verisim::test::some_of({0.1, 0.45})) {
     for (const double size : {0.003, 0.03}) {
       const LoadOptions load{.deflection = size, .angular_deflection = step};
       const Solid cut = minus(make(Kind::sphere, {size}),
@@ -351,7 +351,8 @@ TEST(TrimAgreementThresholds, ChangeOnlyTheShareOfBorders) {
   std::map<std::string, std::size_t> border;
   for (const Varied& varied : all) {
     Tally tally;
-    for (const Part& part : parts) tally.add(compare_at_all_sizes(part, 300, varied.options));
+    for (const Part& part : parts)
+      tally.add(compare_at_all_sizes(part, verisim::test::by_length(60, 300, 300), varied.options));
     expect_agreement(varied.name, tally);
     border[varied.name] = tally.border;
   }
@@ -366,7 +367,7 @@ TEST(TrimAgreementOfModels, RasterAndCrossingsAnswerAlikeOnTheShippedOnes) {
        verisim::test::some_of({"bearing.step", "peg_in_hole.step", "shaft_loose.step", "shaft_m6.step"})) {
     Tally tally;
     for (const Part& part : testing::load(std::string(VERISIM_SOURCE_DIR "/scenarios/models/") + file))
-      tally.add(compare_at_all_sizes(part, 100));
+      tally.add(compare_at_all_sizes(part, verisim::test::by_length(30, 100, 100)));
     EXPECT_GT(tally.inside, 0U);
     EXPECT_EQ(tally.by_triangles, 0U);
     expect_agreement(file, tally);

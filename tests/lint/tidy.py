@@ -1,6 +1,7 @@
 """Runs clang-tidy's short list (.clang-tidy) over one folder's sources: tidy.py CLANG_TIDY BUILD_FOLDER FOLDER.
 
-A unit found clean is remembered by the content of all that it is made of, and not looked at again until that changes.
+Most of the time goes into headers, so all units of a library (cmake/flags.cmake, VERISIM_UNITY) are looked at as one.
+What was found clean is remembered by the content of all that it is made of, and not looked at again until that changes.
 VERISIM_LONG_TESTS=1 looks at each file alone, which also proves that it compiles alone.
 """
 
@@ -27,21 +28,55 @@ def own_headers(build, root):
     return headers
 
 
+def object_of(entry):
+    return re.search(r" -o (\S+)", entry["command"]).group(1)
+
+
+def is_unit(entry, build):
+    return pathlib.Path(entry["file"]).is_relative_to(build) and "/Unity/" in entry["file"]
+
+
 def files_of(entry, build):
-    """The source files that a compile command reads: those of its unit (cmake/flags.cmake, VERISIM_UNITY), or the one."""
-    unit = pathlib.Path(entry["file"])
-    files = re.findall(r'^#include "(.+)"', unit.read_text(), re.M) if unit.is_relative_to(build) else [entry["file"]]
-    return [pathlib.Path(f).resolve() for f in files]
+    """The source files that a compile command reads: those of its unit, or the one."""
+    text = pathlib.Path(entry["file"]).read_text() if is_unit(entry, build) else f'#include "{entry["file"]}"'
+    return [pathlib.Path(f).resolve() for f in re.findall(r'^#include "(.+)"', text, re.M)]
 
 
-def alone(entry, build):
-    """The same command for each file of a unit."""
-    return [entry | {"file": str(f), "command": entry["command"].replace(entry["file"], str(f))}
-            for f in files_of(entry, build)]
+def of_file(entry, file):
+    """The same command for another file."""
+    return entry | {"file": str(file), "command": entry["command"].replace(entry["file"], str(file))}
 
 
-def fingerprint(entry, files, tool):
-    parts = [tool, entry["command"].encode()] + [f.read_bytes() for f in sorted(set(files))]
+def jobs_of(entries, folder, build):
+    """What to look at: (compile commands that it stands for, the folder's files in it)."""
+    libraries, seen = {}, set()
+    for entry in entries:
+        files = [f for f in files_of(entry, build) if f.is_relative_to(folder) and f not in seen]
+        if not files:
+            continue
+        seen.update(files)
+        if os.environ.get("VERISIM_LONG_TESTS"):
+            yield from (([of_file(entry, f)], [f]) for f in files)
+        elif is_unit(entry, build):
+            units, of_all = libraries.setdefault(pathlib.Path(entry["file"]).parent.parent.stem, ([], []))
+            units.append(entry)
+            of_all += files
+        else:
+            yield [entry], files
+    yield from libraries.values()
+
+
+def command_for(entries, files, build, database):
+    """One command for all: that of the first, for a file that includes the files."""
+    if len(entries) == 1:
+        return entries[0]
+    together = database / f"{pathlib.Path(entries[0]['file']).parent.parent.stem}.cpp"
+    together.write_text("".join(f'#include "{f}"\n' for f in files))
+    return of_file(entries[0], together)
+
+
+def fingerprint(command, files, tool):
+    parts = [tool, command.encode()] + [f.read_bytes() for f in sorted(set(files))]
     return hashlib.sha256(b"\0".join(hashlib.sha256(p).digest() for p in parts)).hexdigest()
 
 
@@ -49,27 +84,24 @@ def main():
     clang_tidy, build, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
     root = pathlib.Path.cwd()
     clean = build / "tidy"
-    entries = json.loads((build / "compile_commands.json").read_text())
-    if os.environ.get("VERISIM_LONG_TESTS"):
-        entries = [one for entry in entries for one in alone(entry, build)]
     database = clean / folder.name  # of the folder's own, for the folders run beside each other
     database.mkdir(parents=True, exist_ok=True)
-    (database / "compile_commands.json").write_text(json.dumps(entries))
+    jobs = list(jobs_of(json.loads((build / "compile_commands.json").read_text()), folder, build))
+    commands = [command_for(entries, files, build, database) for entries, files in jobs]
+    (database / "compile_commands.json").write_text(json.dumps(commands))
     version = subprocess.run([clang_tidy, "--version"], capture_output=True, check=True).stdout
     tool = version + (root / ".clang-tidy").read_bytes()
     headers = own_headers(build, root)
 
-    looked_at, failed, seen = 0, 0, set()
-    for entry in entries:
-        sources = {f for f in files_of(entry, build) if f.is_relative_to(folder)}
-        if not sources or sources <= seen:
-            continue
-        seen |= sources
-        made_of = headers.get(entry.get("output", ""))
-        mark = clean / fingerprint(entry, made_of + list(sources), tool) if made_of else None
-        if mark and mark.exists():
-            continue
-        looked_at += len(sources)
+    looked_at, failed = 0, 0
+    for (entries, files), entry in zip(jobs, commands):
+        made_of = [headers.get(object_of(e)) for e in entries]
+        mark = None  # what ninja knows nothing of is always looked at
+        if all(made_of):
+            mark = clean / fingerprint(entry["command"], files + [f for some in made_of for f in some], tool)
+            if mark.exists():
+                continue
+        looked_at += len(files)
         # A unit includes its files; that is what it is for.
         command = [clang_tidy, "--quiet", f"--config-file={root}/.clang-tidy", "--checks=-bugprone-suspicious-include",
                    "--extra-arg=-Wno-unused-command-line-argument",  # some are for g++ alone
@@ -81,8 +113,8 @@ def main():
             print(result.stdout, result.stderr, flush=True)
         elif mark:
             mark.touch()
-    print(f"{len(seen)} files, {looked_at} looked at anew, {failed} commands with findings")
-    return 1 if failed or not seen else 0
+    print(f"{sum(len(files) for _, files in jobs)} files, {looked_at} looked at anew, {failed} commands with findings")
+    return 1 if failed or not jobs else 0
 
 
 if __name__ == "__main__":

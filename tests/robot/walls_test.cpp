@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/base/pinned_math.hpp"
+#include "tests/length.hpp"
 #include "tests/support/random_inputs.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/tolerance.hpp"
@@ -130,7 +131,7 @@ Walked walk(std::uint64_t seed, const WallSettings& settings, bool is_limited, b
 TEST(Walls, AreNeverTouchedInAThousandWalks) {
   double nearest = 1e9, way = 0;
   int came_near = 0, touched_without = 0;
-  for (const std::uint64_t seed : test::seeds(1000)) {
+  for (const std::uint64_t seed : test::seeds(test::by_length<std::uint64_t>(60, 1000, 1000))) {
     const Walked walked = walk(seed, cave(), true, seed % 2 == 0);
     ASSERT_GT(walked.nearest, 0) << seed;
     nearest = std::fmin(nearest, walked.nearest);
@@ -149,7 +150,8 @@ TEST(Walls, AreNeverTouchedInAThousandWalks) {
 TEST(Walls, OfARoomWithSharpCornersAreNotTouchedEither) {
   WallSettings settings = cave();
   settings.corners = {{-2.5, -1.5}, {2.5, -1.5}, {0.5, 2.2}};
-  for (const std::uint64_t seed : test::seeds(200)) ASSERT_GT(walk(seed, settings, true, true).nearest, 0) << seed;
+  for (const std::uint64_t seed : test::seeds(test::by_length<std::uint64_t>(20, 200, 200)))
+    ASSERT_GT(walk(seed, settings, true, true).nearest, 0) << seed;
 }
 
 // The server dies: its last command stays in force for 250 ms and ends within 200 more. With a delay that holds this

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/geometry/loader.hpp"
+#include "tests/length.hpp"
 #include "tests/ruler/drop_scenes.hpp"
 #include "tests/ruler/shapes.hpp"
 #include "tests/support/tolerance.hpp"
@@ -95,7 +96,7 @@ TEST(Lifted, OverlapIsThatOfTheSurfaces) {
   };
   ruler::Shape plate = shape_of(drops::moved(drops::box(0.1, 0.1, 0.02), {0, 0, -0.01}));
   plate.lift();
-  for (const auto& [solid, height] : bodies) {
+  for (const auto& [solid, height] : test::some_of(bodies)) {
     SCOPED_TRACE(solid->text());
     ruler::Shape body = shape_of(solid);
     ASSERT_TRUE(ruler::has_surfaces(body, plate));

@@ -209,7 +209,7 @@ Channels any_channels(const RandomStream& random, std::uint64_t k, const Channel
 }
 
 std::uint64_t fuzz_count() {
-  return test::by_length<std::uint64_t>(50'000, 200'000, 10'000'000);
+  return test::by_length<std::uint64_t>(12'500, 200'000, 10'000'000);
 }
 
 // Issue, "Numbers": 10^7 frames with VERISIM_LONG_TESTS=1, a fiftieth without.

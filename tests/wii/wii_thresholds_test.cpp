@@ -206,7 +206,8 @@ INSTANTIATE_TEST_SUITE_P(
                        SearchNumber{"first_turn", [](PlaceSearch& s, double f) { s.first_turn *= f; }},
                        SearchNumber{"step_min", [](PlaceSearch& s, double f) { s.step_min *= f; }},
                        SearchNumber{"angle_min", [](PlaceSearch& s, double f) { s.angle_min *= f; }},
-                       SearchNumber{"equal_coverage", [](PlaceSearch& s, double f) { s.equal_coverage *= f; }}})),
+                       SearchNumber{"equal_coverage", [](PlaceSearch& s, double f) { s.equal_coverage *= f; }}},
+                      6)),
     [](const auto& number) { return std::string(number.param.name); });
 
 PlaceOptions in_front_of_a_screen() {
@@ -219,7 +220,7 @@ PlaceOptions in_front_of_a_screen() {
 
 TEST_P(WiiPlaceSearch, HardlyChangesWhatThePlaceIsWorth) {
   static const Placement usual = good_places(in_front_of_a_screen()).front();
-  for (const double factor : {0.5, 2.0}) {
+  for (const double factor : test::some_of({0.5, 2.0})) {
     PlaceOptions options = in_front_of_a_screen();
     GetParam().scale(options.search, factor);
     const Placement place = good_places(options).front();
