@@ -61,11 +61,15 @@ LineProgram::LineProgram(const std::string& command) : command_(command) {
 
 LineProgram::~LineProgram() {
   close(to_);
-  pollfd ended = {from_, 0, 0};  // nothing but its hanging up
-  poll(&ended, 1, kFarewell);
+  (void)wait_for_its_end();
   close(from_);
   kill(-pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
+}
+
+bool LineProgram::wait_for_its_end() const {
+  pollfd ended = {from_, 0, 0};  // nothing but its hanging up
+  return poll(&ended, 1, kFarewell) > 0;
 }
 
 void LineProgram::complain(const std::string& what) {
@@ -76,7 +80,7 @@ std::string LineProgram::ask(const std::string& line, double patience_s) {
   using Clock = std::chrono::steady_clock;
   const std::string request = line + "\n";
   if (send(to_, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-    complain("takes no more lines");
+    complain(wait_for_its_end() ? "has ended" : "takes no more lines");
   const auto end = Clock::now() + std::chrono::duration<double>(patience_s);
   for (;;) {
     if (const std::size_t at = received_.find('\n'); at != std::string::npos) {

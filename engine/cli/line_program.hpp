@@ -18,6 +18,8 @@ class LineProgram {
   [[nodiscard]] std::string ask(const std::string& line, double patience_s);
 
  private:
+  /// True if it hangs up within a second.
+  [[nodiscard]] bool wait_for_its_end() const;
   [[noreturn]] void complain(const std::string& what);
 
   std::string command_;

@@ -52,7 +52,8 @@ class FreeMotion(ProgramTest):
     def test_two_bodies_keep_their_momentum(self):
         """1e-9 of the summed magnitudes; the forces on both are equal and opposite, about one point."""
         methods = [(h, i) for h in ("off", "restore", "blend") for i in ("semi-implicit", "implicit")] + [("exact", "implicit")]
-        for kind, ratio in (("boxes", 1), ("boxes", 1000), ("spheres", 1), ("cylinders", 0.001), ("pegring", 1)):
+        kinds = [("pegring", 1), ("boxes", 1), ("boxes", 1000), ("spheres", 1), ("cylinders", 0.001)]
+        for kind, ratio in kinds[:1 if os.environ["VERISIM_SANITIZE"] else None]:
             for hybrid, integrator in methods:
                 with self.subTest(kind=kind, ratio=ratio, hybrid=hybrid, integrator=integrator), self.run_scene(
                         "two_free_bodies", kind=kind, ratio=ratio, hybrid=hybrid, integrator=integrator) as f:

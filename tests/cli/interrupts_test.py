@@ -11,6 +11,7 @@ import h5py
 from program import ProgramTest, SMALL, VERISIM
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+LONG = "12" if os.environ["VERISIM_SANITIZE"] else "120"  # s, whose replay takes long: the sanitizers are ten times slower
 SOON = 20  # s, for the slowest machine and sanitizer; usual are milliseconds
 
 
@@ -58,7 +59,7 @@ class Interrupts(ProgramTest):
         self.succeed("replay", name, "--verify")
 
     def test_every_other_long_command_ends_at_once(self):
-        self.succeed("run", "small.lua", "-o", "long.h5", "--duration", "120", "--quiet")
+        self.succeed("run", "small.lua", "-o", "long.h5", "--duration", LONG, "--quiet")
         commands = [["replay", "long.h5"], ["replay", "long.h5", "--verify"], ["wii", "validate"],
                     ["wii", "place", "--samples", "1000000000"], ["reproduce", "--only", "R2", "-o", "r", "--quiet"],
                     ["run", "small.lua", "-o", "fine.h5", "--set", "voxelsize=0.0002"],

@@ -87,7 +87,7 @@ class Judge(ProgramTest):
         self.assertEqual(said["rows"][0]["valid"], 500)
         self.assertLess(said["rows"][0]["position_m"]["max"], 1e-12)
         self.assertIsNone(said["time_offset_better_s"])
-        for program, words in [("true", "has ended"), ("echo nonsense; cat >/dev/null", "'nonsense', not a number"),
+        for program, words in [("true", "has ended"), ("exec <&-; sleep 0.2", "has ended"), ("echo nonsense; cat >/dev/null", "'nonsense', not a number"),
                                ("sleep 60", "has said nothing for 0.5 s")]:
             self.refuse(3, words, "wii", "judge", "--program", program, "--trajectory", "static", "--patience", "0.5")
 
@@ -120,7 +120,8 @@ class Judge(ProgramTest):
         self.assertEqual(said["rows"][0]["tracker"], f"Tracker0@127.0.0.1:{port}")
         self.assertGreater(said["rows"][0]["valid"], 300)
         self.assertLess(said["rows"][0]["position_m"]["rms"], 0.02)
-        heard = sum(1 for line in open(self.path("heard.csv")) if line[0].isdigit())
+        with open(self.path("heard.csv")) as f:
+            heard = sum(1 for line in f if line[0].isdigit())
         self.assertEqual(heard, said["samples"])
 
     def test_files_are_those_of_the_validation(self):
