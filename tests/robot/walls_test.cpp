@@ -131,20 +131,21 @@ Walked walk(std::uint64_t seed, const WallSettings& settings, bool is_limited, b
 TEST(Walls, AreNeverTouchedInAThousandWalks) {
   double nearest = 1e9, way = 0;
   int came_near = 0, touched_without = 0;
-  for (const std::uint64_t seed : test::seeds(test::by_length<std::uint64_t>(60, 1000, 1000))) {
+  const int walks = test::by_length(60, 1000, 1000);
+  for (const std::uint64_t seed : test::seeds(static_cast<std::uint64_t>(walks))) {
     const Walked walked = walk(seed, cave(), true, seed % 2 == 0);
     ASSERT_GT(walked.nearest, 0) << seed;
     nearest = std::fmin(nearest, walked.nearest);
-    way += walked.way / 1000;
+    way += walked.way / walks;
     came_near += walked.nearest < 0.10 ? 1 : 0;
     if (seed <= 50) touched_without += walk(seed, cave(), false, seed % 2 == 0).nearest < 0 ? 1 : 0;
   }
   RecordProperty("nearest", std::to_string(nearest));
   RecordProperty("way", std::to_string(way));
-  EXPECT_GT(came_near, 500) << "walls that keep the base in the middle of the room would prove little";
+  EXPECT_GT(came_near, walks / 2) << "walls that keep the base in the middle of the room would prove little";
   EXPECT_GT(touched_without, 25) << "nor would walks that touch nothing without walls";
   EXPECT_GT(way, 1) << "nor would a base that stands";
-  std::printf("nearest %.4f m, %.2f m walked on average, %d of 1000 within 10 cm\n", nearest, way, came_near);
+  std::printf("nearest %.4f m, %.2f m walked on average, %d of %d within 10 cm\n", nearest, way, came_near, walks);
 }
 
 TEST(Walls, OfARoomWithSharpCornersAreNotTouchedEither) {
