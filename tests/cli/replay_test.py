@@ -124,8 +124,8 @@ addObject{ name="rod", voxelsize=0.002, density=2000, position={0,0,0.02997},
         self.refuse(3, "--no-embed", "replay", run_file)
 
     def test_a_flipped_bit_anywhere_is_found_or_harmless(self):
-        """Flips one bit at a hundred places of the file (under the sanitizers at 20): replay never says equal for a file whose data differ, and never
-        crashes. Padding, free space and wall clock may change unseen."""
+        """Flips one bit at a hundred places of the file (under the sanitizers at 20): replay never says equal for a file
+        whose data differ, and never crashes. Padding, free space and wall clock may change unseen."""
         run_file, _ = self.small_run("--duration", "0.05")
         with open(run_file, "rb") as f:
             content = f.read()

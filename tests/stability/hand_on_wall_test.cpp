@@ -76,7 +76,7 @@ TEST(HandOnWall, IsStableUpToTheRecurrencesStiffness) {
 
 // Colgate and Schenkel: b > K T/2 + |B|. Abbott and Okamura: K <= min(2 b/T, 2 f_c/Delta).
 TEST(HandOnWall, IsPassiveUpToTheFormulas) {
-  for (const double B : test::some_of({0.4, 0.0}))
+  for (const double B : test::some_of({0.4, 0.0, -0.0}))
     for (const double T : test::some_of({2e-3, 5e-4})) {
       HandOnWall h;
       h.wall_damping = B;
