@@ -18,14 +18,14 @@ struct Setting {
   std::vector<std::pair<std::string, std::string>> sets;
 };
 const std::vector<Setting>& settings() {
-  static const std::vector<Setting> kAll = {
+  static const std::vector<Setting> kSettings = {
       {"gain 10000, estimated base", {}},
       {"gain 10000, last report of the tracker", {{"predict", "false"}}},
       {"gain 5000, estimated base", {{"gain", "5000"}}},
       {"gain 25000, estimated base", {{"gain", "25000"}}},
       {"gain 10000, walk of 0.57 m/s", {{"walk", "0.57"}}},
   };
-  return kAll;
+  return kSettings;
 }
 
 struct Walks {

@@ -5,7 +5,7 @@
 namespace verisim::reproduce {
 
 std::span<const Reproduction> reproductions() {
-  static constexpr std::array kAll = {
+  static constexpr std::array kReproductions = {
       Reproduction{"R1", "overruns of the paced trial", &r1_overruns},
       Reproduction{"R2", "passes with and without restoration", &r2_passes},
       Reproduction{"R3", "collisions and cache misses", &r3_collisions},
@@ -18,7 +18,7 @@ std::span<const Reproduction> reproductions() {
       Reproduction{"R10", "stickiness of the bubble's laws", &r10_stickiness},
       Reproduction{"R11", "transparency of the mobile base", &r11_transparency},
   };
-  return kAll;
+  return kReproductions;
 }
 
 }  // namespace verisim::reproduce
