@@ -10,9 +10,36 @@ set(VERISIM_SHARED_REFERENCE "${PROJECT_SOURCE_DIR}/../shared/reference" CACHE P
 set(VERISIM_GENERATED ${CMAKE_BINARY_DIR}/generated)
 configure_file(${PROJECT_SOURCE_DIR}/tests/support/paths.hpp.in ${VERISIM_GENERATED}/tests/support/paths.hpp @ONLY)
 
+# The project's libraries that a target links, and what they link. $1: list that they are added to   $2: the target
+function(verisim_libraries_of out target)
+  set(found ${${out}})
+  get_target_property(links ${target} LINK_LIBRARIES)
+  foreach(library IN LISTS links)
+    if(library MATCHES "^verisim_" AND NOT library IN_LIST found)
+      get_target_property(type ${library} TYPE)
+      if(type STREQUAL STATIC_LIBRARY)
+        list(APPEND found ${library})
+        verisim_libraries_of(found ${library})
+      endif()
+    endif()
+  endforeach()
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
+# Of an inline function that several objects have a linker takes the first it meets: the engine's objects stand before the
+# tests', so that the engine runs as it is compiled for users, not as for tests.
+function(verisim_link_engine_first target)
+  set(libraries)
+  verisim_libraries_of(libraries ${target})
+  list(TRANSFORM libraries REPLACE "(.+)" "$<TARGET_FILE:\\1>")
+  string(JOIN "," files ${libraries})
+  target_link_options(${target} PRIVATE "LINKER:--whole-archive,${files},--no-whole-archive")
+endfunction()
+
 function(verisim_test_program target)
   add_executable(${target})
-  target_link_libraries(${target} PRIVATE verisim_flags verisim_off_the_loop GTest::gtest_main)
+  cmake_language(EVAL CODE "cmake_language(DEFER CALL verisim_link_engine_first ${target})")  # when all LINKS are known
+  target_link_libraries(${target} PRIVATE verisim_flags verisim_tests_own GTest::gtest_main)
   target_include_directories(${target} PRIVATE ${VERISIM_GENERATED})
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)

@@ -45,8 +45,9 @@ class Assemblies(ProgramTest):
             self.assertLess(abs(summary["measures"]["left"]["value"]), 2 * 4.25e-6 / 12 * 12.5 + 1e-6)
             self.assertLess(summary["max_penetration_m"], 1e-6)
 
+    @unittest.skipIf(SANITIZED, "test_every_run_of_it_is_the_same runs the same code")
     def test_a_pressed_shaft_stays_in_the_mouth_under_every_method(self):
-        for hybrid in ("off", "restore", "exact")[2 if SANITIZED else 0:]:
+        for hybrid in ("off", "restore", "exact"):
             for seed in SEEDS[:2]:
                 summary = self.assert_ends("not assembled", seed, hybrid=hybrid, **PRESSED)
         # Two leads of 45 degrees lie on each other when the shaft's end is 1 mm less 9.75 um below the bore's corner.
@@ -60,6 +61,7 @@ class Assemblies(ProgramTest):
         if not SANITIZED:
             self.assert_ends("assembled", 1, hybrid="exact", **LOOSE)
 
+    @unittest.skipIf(SANITIZED, "test_what_is_assembled_comes_out_and_goes_back moves a body of many parts")
     def test_the_bearing_goes_into_its_housing_as_one_body(self):
         summary = self.assert_ends("assembled", 1, hybrid="exact", **ONLY_BEARING)
         self.assertLess(abs(summary["measures"]["left"]["value"]), 1e-4)

@@ -76,7 +76,7 @@ class ExactThresholds : public ::testing::TestWithParam<std::tuple<Threshold, do
   [[nodiscard]] static Numbers numbers() { return scaled(std::get<0>(GetParam()), std::get<1>(GetParam())); }
 };
 INSTANTIATE_TEST_SUITE_P(HalfAndDouble, ExactThresholds,
-                         ::testing::Combine(::testing::ValuesIn(verisim::test::some_of(kThresholds, 9)),
+                         ::testing::Combine(::testing::ValuesIn(verisim::test::some_of(kThresholds, 18)),
                                             ::testing::Values(0.5, 2.0)),
                          [](const auto& number) {
                            const std::string name = std::get<0>(number.param).name;
