@@ -51,7 +51,7 @@ class RobotScenes(ProgramTest):
         self.assertGreater(measured["added_force_rms"], 1)
 
     def test_walls_are_never_touched(self):
-        runs = 1000 if LONG else 6 if SANITIZED else 24
+        runs = 1000 if LONG else 2 if SANITIZED else 24
         told = self.run_json("batch", os.path.join(SCENARIOS, "robot_wall.lua"), "--random", str(runs), "gain=2000..100000", "dropouts=0..1",
                              "delay=0..0.08", "--set", "legs=6", "-o", self.path("walls"))
         (group,) = told["groups"]
