@@ -9,6 +9,7 @@ import xml.etree.ElementTree
 from program import SOURCE, ProgramTest
 
 COLUMNS = "t,battery,gx,gy,gz,x1,y1,s1,x2,y2,s2,x3,y3,s3,x4,y4,s4"
+SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower
 AT_REST = "0.75,0,0,1,609,384,4,415,384,4,-1,-1,-1,-1,-1,-1"
 
 
@@ -59,17 +60,20 @@ class Track(ProgramTest):
 
 
 class Validate(ProgramTest):
+    @unittest.skipIf(SANITIZED, "test_figures_are_the_same_in_every_run_but_for_the_time runs the same code")
     def test_prints_every_tracker_and_trajectory(self):
         text = self.succeed("wii", "validate", "--sensor", "ideal").stdout
         for word in ["geometric", "vrpn-compatible", "three-led", "scaat", "stereo", "natural-yaw", "dropout-both"]:
             self.assertIn(word, text)
 
+    @unittest.skipIf(SANITIZED, "test_figures_are_the_same_in_every_run_but_for_the_time runs the same code")
     def test_the_readme_shows_what_is_printed(self):
         table = self.succeed("wii", "validate", "--sensor", "ideal", "--markdown").stdout
         with open(os.path.join(SOURCE, "README.md")) as readme:
             self.assertIn(table, readme.read(), "verisim wii validate --sensor ideal --markdown")
         self.assertEqual(len(table.splitlines()), 2 + 14)
 
+    @unittest.skipIf(SANITIZED, "test_figures_are_the_same_in_every_run_but_for_the_time runs the same code")
     def test_the_readmes_picture_is_what_is_drawn(self):
         self.succeed("wii", "validate", "-o", self.path("validation.csv"))
         with open(self.path("validation.svg")) as here, open(os.path.join(SOURCE, "engine/wii/validation.svg")) as shipped:
