@@ -34,19 +34,19 @@ class Scenes(ProgramTest):
         self.assertEqual(s["cache_hits"] + s["cache_misses"], s["collisions"])
         self.assertGreater(s["cache_misses"], 0)
 
+    @unittest.skipIf(SANITIZED, "test_peg_in_hole runs the same code")
     def test_peg_in_hole_with_half_a_voxel_of_clearance(self):
         """Every approach lands on the rim. What guides the pin in there must not be taken for friction: if it is, the
         pin glides off and falls over."""
         depth = {"off": [], "restore": []}
-        for seed in "1" if SANITIZED else "123456":
+        for seed in "123456":
             fit = ["--set", "clearance=mm(1)", "--set", "voxelsize=mm(2)", "--duration", "4", "--seed", seed]
             off, restore = (self.scene("peg_in_hole", *fit, "--set", "hybrid=" + h) for h in depth)
             self.assertEqual(restore["measures"]["passes"]["value"], off["measures"]["passes"]["value"], seed)
             depth["off"].append(off["max_penetration_m"])
             depth["restore"].append(restore["max_penetration_m"])
         # Of one seed it is 1 to 2.5 mm, under both: that of a voxel, as it is met.
-        if not SANITIZED:
-            self.assertLess(statistics.median(depth["restore"]), 1.1 * statistics.median(depth["off"]))
+        self.assertLess(statistics.median(depth["restore"]), 1.1 * statistics.median(depth["off"]))
 
     def test_a_hole_that_is_misjudged_is_found_by_those_who_search(self):
         """20 mm beside a hole of 2 mm of clearance: 30 seeds of the whole trial are in the scenario's notes."""
@@ -79,6 +79,7 @@ class Scenes(ProgramTest):
         for integrator in ["semi-implicit", "implicit"]:
             self.assertEqual(self.scene("stack", "--set", "integrator=" + integrator)["outcome"], "stacked", integrator)
 
+    @unittest.skipIf(SANITIZED, "assembly_test runs the same code")
     @unittest.skipUnless(os.path.isdir(MODELS), "the shared models are not there")
     def test_assembly_of_real_parts(self):
         crank = [os.path.join(MODELS, "freecad_cc0", f) for f in ("crank_base.stp", "crank_disk.stp")]

@@ -8,6 +8,7 @@ import unittest
 from program import SOURCE, ProgramTest
 
 LONG = "VERISIM_LONG_TESTS" in os.environ
+SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower
 
 # As SMALL, and it can misbehave. A box is pressed on a plate and pushed along it.
 PUSHED = """
@@ -56,6 +57,7 @@ class Tradeoff(ProgramTest):
         off = [r["errors"]["force"]["most"] for r in table["rows"] if r["parameters"]["hybrid"] == "off"]
         self.assertLess(max(exact), min(off))
 
+    @unittest.skipIf(SANITIZED, "test_repetitions_are_told_one_by_one runs the same code")
     def test_what_repeats_is_equal_but_for_the_clock(self):
         def counted(table):
             return [(r["parameters"], r["cost"], r["errors"]) for r in table["rows"]]
@@ -106,6 +108,7 @@ class Tradeoff(ProgramTest):
         self.assertIn("voxelsize (0.02) is not finer than that of the settings that it judges (0.01)", both[0])
         self.assertIn("--truth timestep=", both[1])
 
+    @unittest.skipIf(SANITIZED, "test_the_truth_has_its_order_of_convergence runs the same code")
     def test_a_repetition_whose_force_hangs_on_the_step_is_named_with_its_order(self):
         # With this seed the pin's rim is caught at the hole's edge: two blows within 0.1 ms.
         done = self.succeed("tradeoff", os.path.join(SOURCE, "scenarios", "peg_in_hole.lua"), "--set", "clearance=1mm",
@@ -264,7 +267,7 @@ class Auto(ProgramTest):
         self.refuse(3, "there is no ../tradeoff.json", "run", self.scenario)
 
 
-@unittest.skipIf(os.environ.get("VERISIM_SANITIZE", "") != "", "a minute of trials in a usual build; their code runs above")
+@unittest.skipIf(SANITIZED, "a minute of trials in a usual build; their code runs above")
 class AutoKeepsItsBounds(ProgramTest):
     """Of trials that the table was not made from, at least 95 % keep the bounds: other seeds are other tremors, and the
     hand aims and tilts otherwise in each."""
