@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 
 #include "engine/base/error.hpp"
 #include "engine/record/checksums.hpp"
@@ -254,20 +255,18 @@ std::vector<RunWriter::Growing*> RunWriter::growing() {
 }
 
 RunWriter::~RunWriter() {
-  if (!failed_ && has_rows_ && file_ >= 0) {  // ended by an exception: whole but for what only a full run has
-    try {
-      close({}, {});
-    } catch (const Error&) {  // then it is left as a kill would leave it
-    }
-  }
-  const hdf5::Session session;
-  if (failed_) {
-    for (Growing* growing : growing()) growing->dataset.release();
-    file_.release();
+  try {  // ended by an exception: whole but for what only a full run has
+    if (!failed_ && has_rows_ && file_ >= 0) close({}, {});
+  } catch (const std::exception&) {  // of any kind, out of memory among them: then it is left as a kill would leave it
   }
   try {
+    const hdf5::Session session;
+    if (failed_) {
+      for (Growing* growing : growing()) growing->dataset.release();
+      file_.release();
+    }
     close_handles();
-  } catch (const hdf5::Failure&) {  // left as a kill would leave it
+  } catch (const std::exception&) {  // left as a kill would leave it
   }
 }
 

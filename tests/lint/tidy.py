@@ -103,8 +103,8 @@ def main():
                 continue
         forgotten += mark is None
         looked_at += len(files)
-        checks = "-bugprone-suspicious-include"  # a unit includes its files; that is what it is for
-        command = [clang_tidy, "--quiet", f"--config-file={root}/.clang-tidy", f"--checks={checks}",
+        # A unit includes its files; that is what it is for.
+        command = [clang_tidy, "--quiet", f"--config-file={root}/.clang-tidy", "--checks=-bugprone-suspicious-include",
                    "--extra-arg=-Wno-unused-command-line-argument",  # some are for g++ alone
                    "--extra-arg=-Wno-unknown-warning-option",
                    "--extra-arg=-Wno-deprecated-declarations",  # libstdc++ 12's and OpenCASCADE's own
