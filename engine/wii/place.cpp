@@ -147,7 +147,8 @@ std::vector<Parameters> places_of_the_grid(const PlaceOptions& options) {
   for (int i = 0; i < grid * grid * grid; ++i) {
     const Eigen::Array3i cell(i % grid, i / grid % grid, i / (grid * grid));
     const Eigen::Array3d fraction = cell.cast<double>() / (grid - 1);
-    const Vector3d p = options.room_min.array() + fraction * (options.room_max - options.room_min).array();
+    const Vector3d rounded = options.room_min.array() + fraction * (options.room_max - options.room_min).array();
+    const Vector3d p = rounded.cwiseMin(options.room_max);  // by roundings the last one would stand outside
     if ((target - p).norm() >= kDistanceMin) places.push_back(aimed_at(p, target));
   }
   if (places.empty())

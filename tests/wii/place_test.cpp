@@ -4,14 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.hpp"
+#include "engine/base/random.hpp"
 #include "tests/length.hpp"
 
 namespace verisim::wii::place_test {
 namespace {
 
-PlaceOptions seated_in_front_of_a_screen() {
+PlaceOptions seated_in_front_of_a_screen(int heads = 300) {
   PlaceOptions options;
-  options.heads = modelled_heads({0, 1.2, 1}, {0, 1.2, 0}, {0.15, 0.05, 0.1}, 300, 1);
+  options.heads = modelled_heads({0, 1.2, 1}, {0, 1.2, 0}, {0.15, 0.05, 0.1}, heads, 1);
   options.room_min = {-0.6, 0.7, -0.3};
   options.room_max = {0.6, 1.7, 0.1};
   return options;
@@ -28,8 +29,7 @@ TEST(Place, LooksBackAtASingleHead) {
 }
 
 TEST(Place, IsNoWorseThanAnyPlaceOfACoarseGrid) {
-  if (test::kSanitized) GTEST_SKIP() << "the next search runs the same code";
-  const PlaceOptions options = seated_in_front_of_a_screen();
+  const PlaceOptions options = seated_in_front_of_a_screen(test::by_length(50, 300, 300));
   const Placement best = good_places(options).front();
   for (const double x : {-0.5, 0.0, 0.5})
     for (const double y : {0.8, 1.2, 1.6})
@@ -39,13 +39,29 @@ TEST(Place, IsNoWorseThanAnyPlaceOfACoarseGrid) {
 }
 
 TEST(Place, StaysInTheRoomAndSeesNearlyEverySeatedHead) {
-  if (test::kSanitized) GTEST_SKIP() << "the next search runs the same code";
-  const PlaceOptions options = seated_in_front_of_a_screen();
+  const PlaceOptions options = seated_in_front_of_a_screen(test::by_length(50, 300, 300));
   const Placement best = good_places(options).front();
   EXPECT_TRUE((best.X_WR.position.array() >= options.room_min.array()).all());
   EXPECT_TRUE((best.X_WR.position.array() <= options.room_max.array()).all());
   EXPECT_GT(best.covered, 0.98);
   EXPECT_LT(best.error, 0.02);
+}
+
+// Sides that roundings cannot divide: a corner of the search's grid is a corner of the room.
+TEST(Place, StaysInRoomsOfAnySize) {
+  const RandomStream random(1, "rooms");
+  for (std::uint64_t i = 0; i < test::by_length<std::uint64_t>(10, 100, 1000); ++i) {
+    PlaceOptions options = seated_in_front_of_a_screen(10);
+    options.search.grid = 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      options.room_min[axis] = (axis == 1 ? 1.2 : 0) - 0.4 * random.uniform(6 * i + 2 * axis);
+      options.room_max[axis] = (axis == 1 ? 1.2 : 0) + 0.1 * random.uniform(6 * i + 2 * axis + 1);
+    }
+    for (const Placement& place : good_places(options)) {
+      EXPECT_TRUE((place.X_WR.position.array() >= options.room_min.array()).all()) << i;
+      EXPECT_TRUE((place.X_WR.position.array() <= options.room_max.array()).all()) << i;
+    }
+  }
 }
 
 TEST(Place, RefusesNoHeadsAndAnInvertedRoom) {
