@@ -67,7 +67,7 @@ install_optional_packages() {
   missing=$(missing_packages optional | xargs)
   [ "$missing" = "$before" ] || rm -f build*/build.ninja
   [ -z "$missing" ] ||
-    echo "note: not installed: $missing; what needs them is left out, or done by older tools, and its tests say so" >&2
+    echo "note: not installed: $missing; what needs them is left out and says so; clang-tidy is then the older one" >&2
 }
 
 # Compilers at once: one per core, but 1.5 GB of memory for each.

@@ -101,7 +101,8 @@ class Rules(unittest.TestCase):
                            "nlohmann/json.hpp", "sleef.h", "xxhash.h", "openssl/sha.h", "openssl/rand.h",
                            "netinet/in.h",
                            "arpa/inet.h", "netdb.h", "sys/socket.h", "sys/un.h", "poll.h", "sys/epoll.h", "unistd.h",
-                           "spawn.h", "pthread.h", "boost/asio.hpp", "unsupported/Eigen/MatrixFunctions", "time.h")
+                           "spawn.h", "pthread.h", "boost/asio.hpp", "unsupported/Eigen/MatrixFunctions", "time.h",
+                           "math.h", "stdint.h", "string.h")
         ] + [
             ("engine/simulation/a.cpp", '#include "hdf5.h"\n'),
             ("engine/geometry/mesh.cpp", "#include <gp_Pnt.hxx>\n"),
