@@ -56,7 +56,7 @@ ScenarioOptions options_of(const Options& options, const Answer& answer, double 
   const double side = hand.uniform(2) < 0.5 ? -1 : 1;
   const double beside = side * kBeside * std::sqrt(hand.uniform(0)), tilt = kTilt * hand.uniform(1);
   ScenarioOptions all;
-  all.path = VERISIM_SOURCE_DIR "/scenarios/peg_in_hole.lua";
+  all.path = paths::in_sources("scenarios/peg_in_hole.lua");
   all.sets = {{"clearance", fmt::format("{:.17g}", clearance)},
               {"hybrid", answer.hybrid},
               {"contact", answer.contact},

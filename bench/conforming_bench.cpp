@@ -30,7 +30,7 @@ std::vector<Case> cases() {
 /// Times of the frames with contact, the least of all rounds [us]; 0: no contact.
 void play_case(const Case& one, std::vector<double>& least, FrameCost& cost) {
   ScenarioOptions options;
-  options.path = std::string(VERISIM_SOURCE_DIR "/tests/outside/") + one.file;
+  options.path = paths::in_sources("tests/outside/") + one.file;
   options.sets = one.sets;
   if (smoke()) options.duration = 0.2;
   play(

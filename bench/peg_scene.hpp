@@ -41,7 +41,7 @@ struct PegPoses {
 
 inline PegPoses load_peg_poses() {
   PegPoses poses;
-  std::ifstream file(VERISIM_SHARED_REFERENCE "/peers/peg_poses.csv");
+  std::ifstream file(paths::in_shared_reference("peers/peg_poses.csv"));
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line[0] < '0' || line[0] > '9') continue;
     for (char& c : line) c = c == ',' ? ' ' : c;

@@ -33,24 +33,24 @@ target_include_directories(verisim_flags INTERFACE ${PROJECT_SOURCE_DIR})
 add_library(verisim_small_arrays INTERFACE)
 target_compile_options(verisim_small_arrays INTERFACE -O3)
 # Code whose compile time is all that it costs: commands, words, tests. At -O1 g++ takes a fifth less for it, and warns
-# where it inlined half of a pair: an assignment and not its use, a delete and not its new.
+# where it inlined half of a pair: an assignment and not its use, a delete and not its new. Under the sanitizers -O0 takes
+# half of the time of -O1 (link_order.cmake keeps the engine fast).
+set(VERISIM_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
 add_library(verisim_off_the_loop INTERFACE)
-target_compile_options(verisim_off_the_loop INTERFACE
-                       -O1 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-mismatched-new-delete>)
+if(VERISIM_SANITIZE)
+  target_compile_options(verisim_off_the_loop INTERFACE -O0)
+else()
+  target_compile_options(verisim_off_the_loop INTERFACE
+                         -O1 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-mismatched-new-delete>)
+endif()
 # Among -Wall: -Wswitch. A switch over an enum class has no default, so that one that forgets a kind does not compile.
 option(VERISIM_WERROR "Treat warnings as errors" OFF)
 if(VERISIM_WERROR)
   target_compile_options(verisim_flags INTERFACE -Werror)
 endif()
-# Tests' own code. Under the sanitizers -O0 compiles in less than half of the time of -O1 (testing.cmake keeps the engine fast).
-add_library(verisim_tests_own INTERFACE)
-set(VERISIM_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined")
 if(VERISIM_SANITIZE)
   add_compile_definitions(VERISIM_SANITIZED)  # g++ and clang++ say it each in its own way
   add_compile_options(-fsanitize=${VERISIM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${VERISIM_SANITIZE})
-  target_compile_options(verisim_tests_own INTERFACE -O0)
-else()
-  target_link_libraries(verisim_tests_own INTERFACE verisim_off_the_loop)
 endif()
 find_package(Threads REQUIRED)

@@ -128,7 +128,7 @@ Poses recorded_poses() {
   bench::PegPoses recorded = bench::load_peg_poses();
   if (recorded.X_AB.empty())
     fail(ErrorKind::input, "{}: not there, or no pose in it; put it beside the sources",
-         VERISIM_SHARED_REFERENCE "/peers/peg_poses.csv");
+         paths::in_shared_reference("peers/peg_poses.csv"));
   return {std::move(recorded.X_AB), std::move(recorded.depth), bench::kHoleRadius - bench::kPinRadius};
 }
 

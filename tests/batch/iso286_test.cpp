@@ -29,7 +29,7 @@ std::vector<Measure> limits_of(const std::string& folder, const std::string& hol
 
 TEST(Iso286, IsTheTableOfTheScenarios) {
   const test::Folder folder;
-  std::filesystem::copy_file(VERISIM_SOURCE_DIR "/scenarios/iso286.lua", folder.path().string() + "/iso286.lua");
+  std::filesystem::copy_file(paths::in_sources("scenarios/iso286.lua"), folder.path().string() + "/iso286.lua");
   const std::vector<std::string> shafts = {"d", "e", "f", "g", "h", "js", "k", "m", "n", "p", "r", "s"};
   const std::vector<std::string> holes = {"D", "E", "F", "G", "H", "JS"};
   const std::vector<double> sizes = {3.5, 6, 8, 15, 25, 40, 60, 70, 90, 120};

@@ -366,7 +366,7 @@ TEST(TrimAgreementOfModels, RasterAndCrossingsAnswerAlikeOnTheShippedOnes) {
   for (const char* file :
        verisim::test::some_of({"bearing.step", "peg_in_hole.step", "shaft_loose.step", "shaft_m6.step"})) {
     Tally tally;
-    for (const Part& part : testing::load(std::string(VERISIM_SOURCE_DIR "/scenarios/models/") + file))
+    for (const Part& part : testing::load(paths::in_sources("scenarios/models/") + file))
       tally.add(compare_at_all_sizes(part, verisim::test::by_length(30, 100, 100)));
     EXPECT_GT(tally.inside, 0U);
     EXPECT_EQ(tally.by_triangles, 0U);

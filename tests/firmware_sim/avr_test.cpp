@@ -18,7 +18,7 @@ namespace avr_test {
 using bench::Bench;
 using bench::Heard;
 
-const std::string kProgram = VERISIM_BINARY_DIR "/verisim-avr";
+const std::string kProgram = paths::in_build("verisim-avr");
 
 class Avr : public testing::Test {
  protected:

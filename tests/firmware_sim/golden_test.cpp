@@ -93,7 +93,7 @@ void with_collection(const std::string& name, Use&& use) {
 class Golden : public testing::Test {
  protected:
   void SetUp() override {
-    const std::string file = VERISIM_SHARED_REFERENCE "/robot_protocol/golden.json";
+    const std::string file = paths::in_shared_reference("robot_protocol/golden.json");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
     golden = json::parse(std::ifstream(file));
   }

@@ -26,7 +26,7 @@ inline std::string read_file(const std::string& path) {
 }
 
 inline std::string model_path(const std::string& name) {
-  return std::string(VERISIM_SHARED_DATA) + "/models/" + name;
+  return paths::in_shared_data("models/") + name;
 }
 
 inline bool models_are_here() {

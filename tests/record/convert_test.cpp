@@ -128,12 +128,12 @@ TEST(Convert, SaysWhatIsWrong) {
 
 /// A recording of the shared data; its content, or nothing if the folder is not there.
 std::string shared(const std::string& file) {
-  return content_of(std::string(VERISIM_SHARED_DATA "/traces/") + file);
+  return content_of(paths::in_shared_data("traces/") + file);
 }
 
 #define SKIP_WITHOUT(content) \
   if ((content).empty())      \
-  GTEST_SKIP() << "no recordings in " VERISIM_SHARED_DATA "/traces: their conversion was not tried"
+  GTEST_SKIP() << "no recordings in " << paths::in_shared_data("traces") << ": their conversion was not tried"
 
 TEST(ConvertRecording, OfTheLeverRig) {
   for (const char* file : {"q1a_free_motion", "q1a_foam", "q1a_spring", "q1a_rigid", "q1c_rigid", "m2_q1a_free_motion",

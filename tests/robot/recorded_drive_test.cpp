@@ -59,12 +59,13 @@ PlanarTwist between(const PlanarPose& a, const PlanarPose& b) {
 }
 
 std::string shared(const char* file) {
-  return small_run::content_of(std::string(VERISIM_SHARED_DATA "/traces/mecanum_omni4/") + file + ".csv");
+  return small_run::content_of(paths::in_shared_data("traces/mecanum_omni4/") + file + ".csv");
 }
 
-#define SKIP_WITHOUT(content) \
-  if ((content).empty())      \
-  GTEST_SKIP() << "no recordings in " VERISIM_SHARED_DATA "/traces/mecanum_omni4: their drives were not replayed"
+#define SKIP_WITHOUT(content)                                                          \
+  if ((content).empty())                                                               \
+  GTEST_SKIP() << "no recordings in " << paths::in_shared_data("traces/mecanum_omni4") \
+               << ": their drives were not replayed"
 
 TEST(RecordedDrive, EndsWhereTheFittedGeometrySays) {
   for (const auto& [file, end_error] : kRecordings) {

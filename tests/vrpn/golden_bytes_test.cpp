@@ -36,8 +36,9 @@ SensorPose pose_of(View payload) {
 class GoldenBytes : public testing::Test {
  protected:
   void SetUp() override {
-    std::ifstream file(VERISIM_SHARED_REFERENCE "/vrpn_wire/golden.json");
-    if (!file) GTEST_SKIP() << "no recordings at " VERISIM_SHARED_REFERENCE "/vrpn_wire: nothing was compared";
+    std::ifstream file(paths::in_shared_reference("vrpn_wire/golden.json"));
+    if (!file)
+      GTEST_SKIP() << "no recordings at " << paths::in_shared_reference("vrpn_wire") << ": nothing was compared";
     const json golden = json::parse(file);
     sessions_ = golden.at("sessions");
     for (const json& session : sessions_)

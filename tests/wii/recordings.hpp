@@ -21,7 +21,7 @@ struct RecordedRow {
 
 /// Empty if the reference folder is not there.
 inline std::vector<RecordedRow> read_recording(const std::string& name) {
-  std::ifstream file(std::string(VERISIM_SHARED_REFERENCE) + "/wii/" + name);
+  std::ifstream file(paths::in_shared_reference("wii/") + name);
   std::vector<RecordedRow> rows;
   std::string line;
   std::getline(file, line);  // column names

@@ -42,7 +42,7 @@ TEST(VirtualRemote, ImagesTwoLedsAtTheWorkedDistance) {
 class RecordedChannels : public testing::TestWithParam<const char*> {};
 TEST_P(RecordedChannels, AreWhatTheIdealRemoteSends) {
   const std::vector<RecordedRow> rows = read_recording(GetParam());
-  if (rows.empty()) GTEST_SKIP() << "no " << GetParam() << " in " << VERISIM_SHARED_REFERENCE << "/wii";
+  if (rows.empty()) GTEST_SKIP() << "no " << GetParam() << " in " << paths::in_shared_reference("wii");
   VirtualRemote remote({}, 1, "remote");
   int near_edge = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -20,7 +20,7 @@ class Recording : public testing::TestWithParam<const char*> {};
 // The recordings print ten significant digits.
 TEST_P(Recording, IsReproducedToTheLastPrintedDigit) {
   const std::vector<RecordedRow> rows = read_recording(GetParam());
-  if (rows.empty()) GTEST_SKIP() << "no " << GetParam() << " in " << VERISIM_SHARED_REFERENCE << "/wii";
+  if (rows.empty()) GTEST_SKIP() << "no " << GetParam() << " in " << paths::in_shared_reference("wii");
   const std::unique_ptr<Tracker> tracker = make_tracker("vrpn-compatible", {});
   for (const RecordedRow& row : rows) {
     SCOPED_TRACE(row.t);
