@@ -1,5 +1,6 @@
 """What the rules read of a source: its text without comments and strings, its includes, its functions."""
 
+import functools
 import pathlib
 import re
 
@@ -20,6 +21,7 @@ def sources(*folders):
     return found
 
 
+@functools.cache  # thirty rules read the same files
 def without_comments(text, strings=True):
     """`text` with the same lines, each comment a blank; with `strings` false each literal is empty too."""
 
