@@ -79,8 +79,9 @@ struct DesignRequest {
   std::string shard;  ///< "I/N"; empty: all runs
 };
 
-/// The value that `--set KEY=TEXT` would give. Error(input): no such parameter, no such value.
-using ReadValue = std::function<Cell(const std::string& key, const std::string& text)>;
+/// The value that `--set KEY=TEXT` would give. Error(input): no such parameter, no such value. It begins with `option`:
+/// where the text stands, an option or FILE:LINE:
+using ReadValue = std::function<Cell(const std::string& option, const std::string& key, const std::string& text)>;
 
 /// Error(usage): nothing to vary, a KEY in two places, a value twice, too many runs (says how many), a shard that there
 /// is not. Error(input) with FILE:LINE for the table.

@@ -43,7 +43,9 @@ Distribution distribution_from(const std::string& what, const std::string& text,
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos || dots == 0 || dots + 2 >= text.size())
     fail(ErrorKind::usage, "{}: '{}' is no distribution; {}", what, text, kForms);
-  return uniform(what, read(text.substr(0, dots)), read(text.substr(dots + 2)));
+  const double first = read(text.substr(0, dots)),
+               second = read(text.substr(dots + 2));  // the first error is the first's
+  return uniform(what, first, second);
 }
 
 double drawn(const Distribution& distribution, std::uint64_t batch_seed, const std::string& key, std::uint64_t number) {

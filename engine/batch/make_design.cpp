@@ -39,7 +39,7 @@ Axis read_axis(const std::string& option, const ReadValue& read) {
   for (const std::string& part : split_outside_brackets(text, ',')) {
     const std::string value = trimmed(part);
     if (value.empty()) fail(ErrorKind::usage, "{}: an empty value between two commas; write {}=V1,V2", what, key);
-    const Cell cell = read(key, value);
+    const Cell cell = read("--vary", key, value);
     for (const Value& known : axis.values)
       if (known.cell == cell)
         fail(ErrorKind::usage, "{}: '{}' and '{}' are one value; leave one out, or use --repeat", what, known.text,
@@ -75,11 +75,7 @@ Table read_table(const std::string& name, const std::string& content, const Read
         table.seeds.push_back(whole_number(place + ": seed", text, true));
         continue;
       }
-      try {
-        table.rows.back().push_back({text, read(columns[c], text)});
-      } catch (const Error& error) {
-        throw Error(error.kind(), place + ": " + error.what());
-      }
+      table.rows.back().push_back({text, read(place + ":", columns[c], text)});
     }
   }
   return table;
@@ -104,7 +100,7 @@ void read_draws(const std::vector<std::string>& words, const ReadValue& read, Pl
     const std::string what = "--random " + word;
     places.take(key, what);
     const auto number = [&, &key = key](const std::string& figure) {
-      const Cell cell = read(key, trimmed(figure));
+      const Cell cell = read("--random", key, trimmed(figure));
       if (!std::holds_alternative<double>(cell)) fail(ErrorKind::usage, "{}: '{}' is no number", what, figure);
       return std::get<double>(cell);
     };

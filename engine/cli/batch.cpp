@@ -143,8 +143,8 @@ Design Batch::read_design() {
   request.repeat = o_.repeat;
   request.seed = o_.seed;
   request.shard = o_.shard;
-  return batch::make_design(request, [&](const std::string& key, const std::string& text) {
-    return batch::cell_of(ordered_json::parse(parameters.value_of(key, text)));
+  return batch::make_design(request, [&](const std::string& option, const std::string& key, const std::string& text) {
+    return batch::cell_of(ordered_json::parse(parameters.value_of(key, text, option)));
   });
 }
 

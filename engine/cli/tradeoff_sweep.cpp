@@ -107,15 +107,15 @@ Sweep::Sweep(const SweepRequest& request) : request_(request) {
   for (const auto& [key, value] : scenario_.sets) design.set_keys.push_back(key);
   design.repeat = 1;
   design.seed = request.seed;
-  const auto value_of = [&](const std::string& key, const std::string& text) {
-    return batch::cell_of(ordered_json::parse(parameters.value_of(key, text)));
+  const auto value_of = [&](const std::string& option, const std::string& key, const std::string& text) {
+    return batch::cell_of(ordered_json::parse(parameters.value_of(key, text, option)));
   };
   design_ = batch::make_design(design, value_of);
   if (design_.runs() < 2)
     fail(ErrorKind::usage, "one setting only: there is nothing to trade; give --vary two values or more");
   truth_sets_ = split_pairs("--truth", request.truth);
   std::map<std::string, batch::Cell> truth_values;
-  for (const auto& [key, text] : truth_sets_) truth_values[key] = value_of(key, text);
+  for (const auto& [key, text] : truth_sets_) truth_values[key] = value_of("--truth", key, text);
   if (truth_sets_.empty())
     make_truth();
   else

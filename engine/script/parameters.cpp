@@ -79,10 +79,11 @@ const std::vector<ParameterDeclaration>& DeclaredParameters::all() const {
   return implementation_->state.parameters;
 }
 
-std::string DeclaredParameters::value_of(const std::string& key, const std::string& text) {
+std::string DeclaredParameters::value_of(const std::string& key, const std::string& text, const std::string& option) {
   script::ScriptState& state = implementation_->state;
   constexpr std::uint64_t kValueWork = 1'000'000;
   state.allow(kValueWork);
+  state.set_option = option;
   return script::read_set_value(state, key, text);
 }
 

@@ -27,8 +27,9 @@ class DeclaredParameters {
 
   [[nodiscard]] const std::vector<ParameterDeclaration>& all() const;  ///< by name
   /// What `--set key=text` would make of the parameter, as JSON. Error(input): there is none (lists them), the text is
-  /// no value of its type.
-  [[nodiscard]] std::string value_of(const std::string& key, const std::string& text);
+  /// no value of its type. @param option  where the text stands, for the error: --vary, or a line of a file
+  [[nodiscard]] std::string value_of(const std::string& key, const std::string& text,
+                                     const std::string& option = "--set");
 
  private:
   struct Implementation;

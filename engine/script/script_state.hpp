@@ -112,6 +112,7 @@ class ScriptState : public Sandbox {
   std::vector<std::string> parameter_names;
   std::vector<ParameterDeclaration> parameters;  ///< in the same order
   bool parameters_only = false;                  ///< the script ends at params{}
+  std::string set_option = "--set";              ///< where values come from, for errors
   bool parameters_known = false;                 ///< it came through params{}
 
   std::optional<PrecisionChoice> precision;  ///< what precision = "auto" chose: the script has to be run again with it

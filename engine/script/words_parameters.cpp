@@ -97,7 +97,7 @@ void push_set_value(lua_State* L, const std::string& key, const std::string& tex
     }
   }
   Sandbox& sandbox = Sandbox::of(L);
-  const std::string place = fmt::format("--set {}={}", key, text);
+  const std::string place = fmt::format("{} {}={}", ScriptState::of(L).set_option, key, text);
   if (const auto failure = sandbox.load(L, place, "return " + text)) {
     if (!is_bare_word(text))
       raise_for_command_line(L,
@@ -120,8 +120,8 @@ std::string names_hint(const ScriptState& state, const std::string& key) {
 void check_name(lua_State* L, const ScriptState& state, const std::string& key, const std::string& value) {
   const auto& names = state.parameter_names;
   if (std::find(names.begin(), names.end(), key) == names.end())
-    raise_for_command_line(L, fmt::format("--set {}={}: {} has no parameter '{}'{}", key, value, state.name(), key,
-                                          names_hint(state, key)));
+    raise_for_command_line(L, fmt::format("{} {}={}: {} has no parameter '{}'{}", state.set_option, key, value,
+                                          state.name(), key, names_hint(state, key)));
 }
 
 // Leaves the value of `--set key=text` on the stack: of the type of the parameter's default.
@@ -129,8 +129,9 @@ void push_checked_value(lua_State* L, const ScriptState& state, const std::strin
                         int type) {
   push_set_value(L, key, text, type);
   if (lua_type(L, -1) != type)
-    raise_for_command_line(L, fmt::format("--set {}={}: '{}' must be a {}, as its default at {} is, not {}", key, text,
-                                          key, lua_typename(L, type), *state.parameters_place, described(L, -1)));
+    raise_for_command_line(
+        L, fmt::format("{} {}={}: '{}' must be a {}, as its default at {} is, not {}", state.set_option, key, text, key,
+                       lua_typename(L, type), *state.parameters_place, described(L, -1)));
 }
 
 // parameter(0.005, "m", "on the radius"): a default that says its unit and what it means, for params{} alone.
@@ -228,7 +229,7 @@ int set_value_as_json(lua_State* L) {
     if (declared->type == lua_typename(L, known)) type = known;
   push_checked_value(L, state, key, text, type);
   ParameterRoom room;
-  push_text(L, to_json(L, room, lua_gettop(L), fmt::format("--set {}", key)).dump());
+  push_text(L, to_json(L, room, lua_gettop(L), fmt::format("{} {}", state.set_option, key)).dump());
   return 1;
 }
 

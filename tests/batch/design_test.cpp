@@ -10,9 +10,9 @@ namespace verisim::batch::design_test {
 namespace {
 
 /// A scenario with numbers a, b and a text word; "2k" is 2000.
-Cell as_value(const std::string& key, const std::string& text) {
+Cell as_value(const std::string& option, const std::string& key, const std::string& text) {
   if (key == "word") return text;
-  if (key != "a" && key != "b") fail(ErrorKind::input, "no parameter '{}' (a, b, word)", key);
+  if (key != "a" && key != "b") fail(ErrorKind::input, "{} {}={}: no parameter (a, b, word)", option, key, text);
   if (text == "2k") return 2000.0;
   std::size_t end = 0;
   double value = 0;
@@ -21,7 +21,7 @@ Cell as_value(const std::string& key, const std::string& text) {
   } catch (const std::exception&) {
     end = 0;
   }
-  if (end == 0 || end != text.size()) fail(ErrorKind::input, "'{}' is no number", text);
+  if (end == 0 || end != text.size()) fail(ErrorKind::input, "{} {}={}: no number", option, key, text);
   return value;
 }
 
@@ -142,7 +142,7 @@ TEST(Design, RefusesWhatContradictsItself) {
   EXPECT_EQ(refused(with([](R r) { r.vary = {"a=1,,2"}; }), {"empty value"}), 2);
   EXPECT_EQ(refused(with([](R r) { r.vary = {"a=1,2k,2000"}; }), {"'2k'", "'2000'", "one value"}), 2);
   EXPECT_EQ(refused(with([](R r) { r.vary = {"a"}; }), {"KEY="}), 2);
-  EXPECT_EQ(refused(with([](R r) { r.vary = {"c=1"}; }), {"no parameter 'c'", "a, b, word"}), 3);
+  EXPECT_EQ(refused(with([](R r) { r.vary = {"c=1"}; }), {"--vary c=1: no parameter", "a, b, word"}), 3);
   EXPECT_EQ(refused(with([](R r) { r.repeat = 0; }), {"--repeat 0"}), 2);
   for (const char* shard : {"3/2", "0/2", "1/0"})
     EXPECT_EQ(refused(with([&](R r) { r.shard = shard; }), {"--shard", "1 to N"}), 2) << shard;
@@ -161,7 +161,7 @@ TEST(Design, RefusesABadTableWithItsLine) {
   EXPECT_EQ(refused(table("a,word\n"), {"d.csv", "no run"}), 3);
   EXPECT_EQ(refused(table("a,word\n1,x\n2\n"), {"d.csv:3", "1 values", "2 columns"}), 3);
   EXPECT_EQ(refused(table("a,word\n1,\n"), {"d.csv:2", "'word' is empty"}), 3);
-  EXPECT_EQ(refused(table("a,c\n1,2\n"), {"d.csv:2", "no parameter 'c'"}), 3);
+  EXPECT_EQ(refused(table("a,c\n1,2\n"), {"d.csv:2: c=2: no parameter"}), 3);
   EXPECT_EQ(refused(table("a,a\n1,2\n"), {"d.csv:1", "'a'"}), 3);
   EXPECT_EQ(refused(table("a,seed\n1,-2\n"), {"d.csv:2", "seed", "-2"}), 3);
   EXPECT_EQ(refused(table("a,\n1,2\n"), {"d.csv:1", "column 2 has no name"}), 3);
