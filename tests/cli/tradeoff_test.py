@@ -57,7 +57,7 @@ class Tradeoff(ProgramTest):
         off = [r["errors"]["force"]["most"] for r in table["rows"] if r["parameters"]["hybrid"] == "off"]
         self.assertLess(max(exact), min(off))
 
-    @unittest.skipIf(SANITIZED, "test_repetitions_are_told_one_by_one runs the same code")
+    @unittest.skipIf(SANITIZED, "test_every_setting_has_times_counts_errors_and_a_front runs the same code")
     def test_what_repeats_is_equal_but_for_the_clock(self):
         def counted(table):
             return [(r["parameters"], r["cost"], r["errors"]) for r in table["rows"]]
@@ -66,6 +66,7 @@ class Tradeoff(ProgramTest):
         self.assertEqual(counted(first), counted(self.tradeoff(*args)))
         self.assertNotEqual(counted(first), counted(self.tradeoff(*args, "--seed", 7)))
 
+    @unittest.skipIf(SANITIZED, "test_every_setting_has_times_counts_errors_and_a_front runs the same code")
     def test_repetitions_are_told_one_by_one(self):
         table = self.tradeoff("--vary", "hybrid=off,exact", "--repeat", 3)
         for row in table["rows"]:
@@ -115,6 +116,7 @@ class Tradeoff(ProgramTest):
                             "--vary", "hybrid=restore,exact", "--duration", 0.6, "--repeat", 1)
         self.assertRegex(done.stdout, r"in repetition 0 \(order -?\d+\.\d\) it does not: what happens there hangs on the step")
 
+    @unittest.skipIf(SANITIZED, "bounds_test and Auto below run the same code")
     def test_bounds_are_answered_with_a_setting_or_with_none(self):
         args = ("--vary", "hybrid=off,exact", "--repeat", 1)
         plain = self.tradeoff(*args)
@@ -224,6 +226,7 @@ class Auto(ProgramTest):
         os.remove(self.path("tradeoff.json"))
         self.assertIn("equal", self.succeed("replay", self.path("a.h5"), "--verify").stdout)
 
+    @unittest.skipIf(SANITIZED, "test_the_choice_is_a_table_s_and_stands_in_the_run runs the same code")
     def test_what_the_command_line_says_is_kept(self):
         self.make_table()
         parameters, _, _ = self.run_file("a.h5", "--set", "voxelsize=20mm")

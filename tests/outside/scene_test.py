@@ -13,12 +13,6 @@ import numpy as np
 VERISIM = os.environ["VERISIM"]
 HERE = os.path.dirname(os.path.abspath(__file__))
 LONG = os.environ.get("VERISIM_LONG_TESTS") == "1"
-SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower; what it looks for is in the code that runs
-
-
-def some_of(cases):
-    """All of them; under the sanitizers every eighth, the first among them (tests/length.hpp)."""
-    return list(cases)[::8 if SANITIZED and not LONG else 1]
 
 # Of one body, a row per frame: x y z qx qy qz qw; vx vy vz wx wy wz; the contact force.
 Recorded = collections.namedtuple("Recorded", "pose twist force")
@@ -30,9 +24,10 @@ class SceneTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
         self.run_file = os.path.join(self.folder, "run.h5")
 
-    def run_scene(self, scene, *bodies, folder=HERE, **settings):
+    def run_scene(self, scene, *bodies, folder=HERE, seconds=None, **settings):
         """What is recorded of a body; a list of several."""
         command = [VERISIM, "run", os.path.join(folder, scene), "--quiet", "--force", "-o", self.run_file]
+        command += ["--duration", str(seconds)] if seconds else []
         for name, value in settings.items():
             command += ["--set", "{}={}".format(name, value if isinstance(value, str) else repr(float(value)))]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
