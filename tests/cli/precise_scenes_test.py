@@ -8,7 +8,7 @@ import numpy
 
 from program import ProgramTest, SOURCE, dense
 
-SEEDS = range(1, 1 + int(os.environ.get("VERISIM_SEEDS", "3" if os.environ["VERISIM_SANITIZE"] == "" else "1")))
+SEEDS = range(1, 1 + int(os.environ.get("VERISIM_SEEDS", "3")))
 
 
 class PreciseScenes(ProgramTest):

@@ -50,15 +50,17 @@ class RobotScenes(ProgramTest):
         _, measured, _ = self.scene("robot_walk", "--set", "predict=false")
         self.assertGreater(measured["added_force_rms"], 1)
 
+    @unittest.skipIf(SANITIZED, "walls_test runs the same code")
     def test_walls_are_never_touched(self):
-        runs = 1000 if LONG else 2 if SANITIZED else 24
+        runs = 1000 if LONG else 24
         told = self.run_json("batch", os.path.join(SCENARIOS, "robot_wall.lua"), "--random", str(runs), "gain=2000..100000", "dropouts=0..1",
                              "delay=0..0.08", "--set", "legs=6", "-o", self.path("walls"))
         (group,) = told["groups"]
         self.assertEqual(group["outcomes"]["stayed clear"]["count"], runs, group["outcomes"])
-        if not SANITIZED:  # and there was something to touch
-            self.assertIn("touched a wall", self.scene("robot_wall", "--set", "walls=false")[0]["outcome"])
+        # There was something to touch.
+        self.assertIn("touched a wall", self.scene("robot_wall", "--set", "walls=false")[0]["outcome"])
 
+    @unittest.skipIf(SANITIZED, "test_everything_at_once_replays_to_the_bit runs the same code")
     def test_each_part_can_stop_and_start_again(self):
         summary, _, run_file = self.scene("robot_restart")
         self.assertEqual(summary["outcome"], "10 of 10 came back")
@@ -111,6 +113,7 @@ class RobotScenes(ProgramTest):
         self.assertLess(numpy.abs(pose[:, 0] - wanted).max(), 1e-9)
 
     @unittest.skipUnless(os.path.exists(AVR), "verisim-avr is not built: gcc-avr, avr-libc and simavr are missing")
+    @unittest.skipIf(SANITIZED, "avr_test runs the same code")
     def test_the_other_board_drives_the_same_walk(self):
         _, host, _ = self.scene("robot_walk")
         summary, avr, run_file = self.scene("robot_walk", "--set", "board=avr")
