@@ -1,7 +1,6 @@
 """Scenes of hundreds of bodies: they start, run and leave a file; what pairs record stands in one table."""
 import json
 import os
-import resource
 import subprocess
 import unittest
 

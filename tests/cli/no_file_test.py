@@ -11,7 +11,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import ProgramTest, SMALL
+from program import ProgramTest
 
 AT_ONCE = 10  # s; a program under a sanitizer starts slowly
 

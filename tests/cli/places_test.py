@@ -1,7 +1,6 @@
 """Where a command stands and what leads to its files: a folder that is gone, one that may not be read or written,
 symbolic links. Each works, or ends with one line."""
 import os
-import shutil
 import subprocess
 import time
 import unittest

@@ -1,7 +1,6 @@
 """A run file holds all that is needed to simulate again; what differs is found and named."""
 import json
 import os
-import shutil
 import unittest
 
 import h5py

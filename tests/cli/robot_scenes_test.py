@@ -1,5 +1,4 @@
 """The mobile robot in scenes (dissertation chapter 5): what is felt of it, walls, restarts, recordings, the other board."""
-import json
 import math
 import os
 import unittest

@@ -4,7 +4,6 @@ import os
 import statistics
 import unittest
 
-import h5py
 
 from program import turned_stl, ProgramTest, SHARED, SOURCE
 
