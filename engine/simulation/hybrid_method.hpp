@@ -54,7 +54,8 @@ class PairMethod {
   PairMethod(const PairMethod&) = delete;
   PairMethod& operator=(const PairMethod&) = delete;
 
-  /// False: the method answers every contact of the pair itself; voxels are not even asked.
+  /// False: the method answers every contact of the pair itself; voxels are not even asked, and nothing is looked up.
+  /// Always the same; so is precise().
   [[nodiscard]] virtual bool needs_voxels() const { return true; }
   /// Removes from the voxels' contacts those that the method answers itself. Keeps the order.
   virtual void take_over(ContactList& /*contacts*/) const {}

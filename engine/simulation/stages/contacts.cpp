@@ -17,6 +17,7 @@ void Contacts::add_link(const World& world, std::size_t l) {
   links_.push_back(std::make_unique<CollisionLink>(*first.voxels, *second.voxels));
   if (first.mesh) links_.back()->find_by_triangles(*first.mesh, *second.mesh);
   meets_.push_back(false);
+  asked_.push_back(false);
 }
 
 Pose Contacts::X_AB(const World& world, std::size_t l) const {
@@ -32,15 +33,16 @@ void Contacts::query(const World& world, const Neighbours& neighbours, const Pai
     p_WC_[i] = world.bodies[i].rigid.p_WC;
   }
   for (const std::size_t l : world.near_links) {
-    links_[l]->clear();
+    if (asked_[l]) links_[l]->clear();
+    asked_[l] = false;
     const auto [i, j, number] = world.links[l];
     meets_[l] = gap(neighbours.box(i), neighbours.box(j)) <= 0;
     if (!meets_[l]) continue;
     ++cost.pairs_tested;
-    const PairMethod* method = methods.acting(l);
-    if (method != nullptr && !method->needs_voxels()) continue;
+    if (!methods.needs_voxels(l)) continue;
+    asked_[l] = true;
     query_link(world, l, cost);
-    if (method != nullptr) method->take_over(links_[l]->contacts());
+    if (const PairMethod* method = methods.acting(l)) method->take_over(links_[l]->contacts());
     const std::uint32_t found = count(l);
     cost.contacts += found;
     of_body_[i] += found;

@@ -26,9 +26,11 @@ class Contacts {
   [[nodiscard]] CollisionLink& link(std::size_t link) const { return *links_[link]; }
   /// Do the bodies' boxes, as large as their voxels reach, meet?
   [[nodiscard]] bool meets(std::size_t link) const { return meets_[link]; }
-  [[nodiscard]] std::uint32_t count(std::size_t link) const { return links_[link]->contacts().size; }
+  [[nodiscard]] std::uint32_t count(std::size_t link) const { return asked_[link] ? links_[link]->contacts().size : 0; }
   [[nodiscard]] bool touches(std::size_t link) const { return count(link) > 0; }
-  [[nodiscard]] double depth_max(std::size_t link) const { return links_[link]->depth_max(); }  ///< m
+  [[nodiscard]] double depth_max(std::size_t link) const {
+    return asked_[link] ? links_[link]->depth_max() : 0;
+  }  ///< m
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return of_body_[body]; }
   /// m, the body's centre of mass when contacts were found: what their wrenches are about.
   [[nodiscard]] const Vector3d& found_at(std::size_t body) const { return p_WC_[body]; }
@@ -40,6 +42,7 @@ class Contacts {
 
   std::vector<std::unique_ptr<CollisionLink>> links_;
   std::vector<bool> meets_;
+  std::vector<bool> asked_;  ///< were the pair's voxels asked in the last frame in which it was near?
   std::vector<std::uint64_t> of_body_;
   std::vector<Vector3d> p_WC_;
 };

@@ -176,7 +176,7 @@ void ExactResponse::begin(const World& world, const Response& response) {
 void ExactResponse::expect_blows(const World& world, const PairMethods& methods) {
   for (const std::size_t i : world.busy) bodies_[i].speed_hit = bodies_[i].speed;
   for (const std::size_t l : world.near_links) {
-    if (methods.acting(l) == nullptr || methods.acting(l)->precise() == nullptr) continue;
+    if (methods.searching(l) == nullptr) continue;
     const Link& link = world.links[l];
     OfBody& first = bodies_[link.first];
     OfBody& second = bodies_[link.second];
@@ -196,7 +196,7 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
   for (const std::size_t l : world.near_links) {
     OfLink& of = links_[l];
     begin_frame(world, of);
-    exact::ExactLink* search = methods.acting(l) != nullptr ? methods.acting(l)->precise() : nullptr;
+    exact::ExactLink* search = methods.searching(l);
     if (search == nullptr) continue;
     const Link& link = world.links[l];
     const Body& first = world.bodies[link.first];
@@ -208,6 +208,7 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
     bodies_[link.first].solved = bodies_[link.first].solved || world.moves(first);
     bodies_[link.second].solved = bodies_[link.second].solved || world.moves(second);
     of.searched = true;
+    of.idle = false;
     if (are_apart(placed(world, link.first), placed(world, link.second), reach)) continue;
     of.calm = calm;
     find(world, l, *search, reach);
@@ -218,11 +219,13 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
 
 /// What is known of a link from the frame before.
 void ExactResponse::begin_frame(const World& world, OfLink& of) const {
+  if (of.idle) return;
   const OfLink last = of;
   of = {};
   of.calm = last.calm;
   of.told = last.told;
-  if (last.found_in == kNone || last.found_in + 1 != world.frame) return;
+  of.idle = last.found_in == kNone || last.found_in + 1 != world.frame;
+  if (of.idle) return;
   of.overlap = last.overlap;
   of.pressing = last.pressing;
 }

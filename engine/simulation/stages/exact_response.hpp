@@ -76,17 +76,18 @@ class ExactResponse {
   struct OfLink {
     exact::ExactLink* search = nullptr;  ///< null: none in this frame, or certainly without rows
     bool searched = false;
-    std::size_t next = kNone;  ///< link of its island
-    Wrench on_second;
-    std::uint32_t acting = 0;
-    double depth_max = 0;
-    double overlap = 0;            ///< m, of rows that were not late when there last were any
-    std::size_t found_in = kNone;  ///< frame
-    Pressing pressing;             ///< of the last frame, or of a blow in this one
-    int in_solver = exact::ConvexStep::kNoGrip;
-    std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
     bool late = false;       ///< is any row, in this frame, of bodies that have not been calm since?
     bool told = false;       ///< that they overlap
+    bool idle = false;       ///< since the last frame's begin nothing has been found: all but calm and told is as made
+    std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
+    std::uint32_t acting = 0;
+    int in_solver = exact::ConvexStep::kNoGrip;
+    std::size_t next = kNone;      ///< link of its island
+    std::size_t found_in = kNone;  ///< frame
+    double depth_max = 0;
+    double overlap = 0;  ///< m, of rows that were not late when there last were any
+    Wrench on_second;
+    Pressing pressing;  ///< of the last frame, or of a blow in this one
   };
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);

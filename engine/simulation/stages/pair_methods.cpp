@@ -6,13 +6,16 @@
 namespace verisim {
 
 void PairMethods::add_link(const World& world, const Contacts& contacts, std::size_t l) {
-  VERISIM_ASSERT(l == methods_.size());
+  VERISIM_ASSERT(l == of_.size());
   const Body& first = world.bodies[world.links[l].first];
   const Body& second = world.bodies[world.links[l].second];
   const Hybrid method = lesser(first.method, second.method);
   const bool acts = method->needs_entities() && first.entities && second.entities;
-  methods_.push_back(acts ? method->make({world.parameters, first, second, contacts.link(l)}) : nullptr);
-  acting_.push_back(nullptr);
+  OfPair& of = of_.emplace_back();
+  if (acts) of.method = method->make({world.parameters, first, second, contacts.link(l)});
+  if (of.method == nullptr) return;
+  of.precise = of.method->precise();
+  of.needs_voxels = of.method->needs_voxels();
 }
 
 Hybrid PairMethods::asked_of(const World& world, std::size_t l) {
@@ -42,8 +45,9 @@ bool PairMethods::is_switched_off(const World& world, std::size_t l) {
 
 void PairMethods::choose(const World& world) {
   for (const std::size_t l : world.near_links) {
-    acting_[l] = is_switched_off(world, l) ? nullptr : methods_[l].get();
-    if (acting_[l] != nullptr) acting_[l]->begin_frame();
+    OfPair& of = of_[l];
+    of.acts = of.method != nullptr && !is_switched_off(world, l);
+    if (of.acts && of.needs_voxels) of.method->begin_frame();
   }
 }
 

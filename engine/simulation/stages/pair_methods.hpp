@@ -21,21 +21,31 @@ class PairMethods {
 
   /// Which of them act in this frame.
   void choose(const World& world);
-  /// Null: the voxels' penalty alone.
   /// Has a script switched off the method of one of the two?
   [[nodiscard]] static bool is_switched_off(const World& world, std::size_t link);
-  [[nodiscard]] PairMethod* acting(std::size_t link) const { return acting_[link]; }
+  /// Null: the voxels' penalty alone.
+  [[nodiscard]] PairMethod* acting(std::size_t link) const { return of_[link].acts ? of_[link].method.get() : nullptr; }
+  /// The search for precise contacts that acts in this frame; null: none.
+  [[nodiscard]] exact::ExactLink* searching(std::size_t link) const {
+    return of_[link].acts ? of_[link].precise : nullptr;
+  }
+  /// Are the pair's voxels to be asked?
+  [[nodiscard]] bool needs_voxels(std::size_t link) const { return !of_[link].acts || of_[link].needs_voxels; }
   [[nodiscard]] LookUps look_ups(std::size_t link) const {
-    return acting_[link] != nullptr ? acting_[link]->look_ups() : LookUps{};
+    return of_[link].acts && of_[link].needs_voxels ? of_[link].method->look_ups() : LookUps{};
   }
   /// Does the pair's method search for precise contacts?
-  [[nodiscard]] bool is_precise(std::size_t link) const {
-    return methods_[link] != nullptr && methods_[link]->precise() != nullptr;
-  }
+  [[nodiscard]] bool is_precise(std::size_t link) const { return of_[link].precise != nullptr; }
 
  private:
-  std::vector<std::unique_ptr<PairMethod>> methods_;
-  std::vector<PairMethod*> acting_;
+  /// What never changes of a method stands beside it: of a heap's thousand pairs most are only asked for that.
+  struct OfPair {
+    std::unique_ptr<PairMethod> method;  ///< null: the voxels' penalty alone
+    exact::ExactLink* precise = nullptr;
+    bool needs_voxels = true;
+    bool acts = false;
+  };
+  std::vector<OfPair> of_;
 };
 
 }  // namespace verisim
