@@ -14,8 +14,8 @@ import h5py
 from program import ProgramTest, VERISIM
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower: without the three that take half of the time
-LEFT_OUT = ["R3", "R9", "R11"] if SANITIZED else []
+SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower: without the five that take most of the time
+LEFT_OUT = ["R1", "R3", "R9", "R10", "R11"] if SANITIZED else []
 IDS = [f"R{i}" for i in range(1, 12) if f"R{i}" not in LEFT_OUT]
 
 
@@ -97,6 +97,7 @@ class Reproduce(ProgramTest):
             scale = (y[0] - y[-1]) / (rates[-1] - rates[0])  # px a m/s: y is down
             self.assertLess(max(abs(y[0] - at - scale * rate) for at, rate in zip(y, rates)), 0.5, law)
 
+    @unittest.skipIf("R10" in LEFT_OUT, "not measured")
     def test_r10_is_of_the_table_beside_it(self):
         with open(self.path([file for file in self.files("R10") if file.endswith("stickiness.csv")][0])) as table:
             rows = [row for row in csv.DictReader(table) if row["outcome"] == "released"]
@@ -112,6 +113,7 @@ class Reproduce(ProgramTest):
             if file.endswith(".svg"):
                 ElementTree.parse(self.path(file))
 
+    @unittest.skipIf("R1" in LEFT_OUT, "not measured")
     def test_r1_counts_overruns_beside_those_of_an_empty_loop(self):
         share = self.rows("R1")[2]
         self.assertLessEqual(share["interval_95"][0], share["here"])

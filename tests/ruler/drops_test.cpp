@@ -193,7 +193,7 @@ struct Seeds {
 };
 
 Seeds seeds() {
-  Seeds seeds{0, test::by_length<std::uint64_t>(3, 200, 2000), false};
+  Seeds seeds{0, test::by_length<std::uint64_t>(1, 200, 2000), false};
   if (const char* asked = std::getenv("VERISIM_DROPS")) {
     char* rest = nullptr;
     seeds = {std::strtoull(asked, &rest, 10), 0, true};
