@@ -28,9 +28,8 @@ class Contacts {
   [[nodiscard]] bool meets(std::size_t link) const { return meets_[link]; }
   [[nodiscard]] std::uint32_t count(std::size_t link) const { return asked_[link] ? links_[link]->contacts().size : 0; }
   [[nodiscard]] bool touches(std::size_t link) const { return count(link) > 0; }
-  [[nodiscard]] double depth_max(std::size_t link) const {
-    return asked_[link] ? links_[link]->depth_max() : 0;
-  }  ///< m
+  /// m
+  [[nodiscard]] double depth_max(std::size_t link) const { return asked_[link] ? links_[link]->depth_max() : 0; }
   [[nodiscard]] std::uint64_t of_body(std::size_t body) const { return of_body_[body]; }
   /// m, the body's centre of mass when contacts were found: what their wrenches are about.
   [[nodiscard]] const Vector3d& found_at(std::size_t body) const { return p_WC_[body]; }
