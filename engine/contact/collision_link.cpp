@@ -102,7 +102,7 @@ void CollisionLink::follow_motion() {
     const double began = moved_before && met_in_[p] + 1 == queries_ ? depth_before_[p] * softer : 0;
     double way_in = 0;
     if (moved_before) {
-      const Vector3d way = turned * Vector3d(c.x[i], c.y[i], c.z[i]) + moved;
+      const Vector3d way = turned.lazyProduct(Vector3d(c.x[i], c.y[i], c.z[i])) + moved;  // compiled in place, unlike *
       way_in = -(c.nx[i] * way.x() + c.ny[i] * way.y() + c.nz[i] * way.z());
     }
     deepest_ = std::max(deepest_, depth);
