@@ -8,9 +8,10 @@ std::vector<CsvRow> read_csv(const std::string& name, const std::string& content
   std::vector<CsvRow> rows;
   CsvRow row{.line = 1, .fields = {""}};
   std::size_t line = 1, quote_line = 0;
-  bool quoted = false;
+  bool quoted = false, has_quotes = false;
   const auto end_row = [&] {
-    if (row.fields.size() > 1 || !row.fields.front().empty()) rows.push_back(row);
+    if (row.fields.size() > 1 || !row.fields.front().empty() || has_quotes) rows.push_back(row);
+    has_quotes = false;
     row = {.line = line, .fields = {""}};
   };
   std::size_t i = content.starts_with("\xef\xbb\xbf") ? 3 : 0;  // what spreadsheets put before UTF-8
@@ -26,7 +27,7 @@ std::vector<CsvRow> read_csv(const std::string& name, const std::string& content
       else
         quoted = false;
     } else if (c == '"' && field.empty()) {
-      quoted = true;
+      quoted = has_quotes = true;
       quote_line = line;
     } else if (c == ',') {
       row.fields.emplace_back();

@@ -26,7 +26,11 @@ void check_plain(const std::string& name, const struct stat& info) {
   if (!type.empty()) fail(ErrorKind::input, "{}: is {}, a file is wanted; name a plain file", name, type);
 }
 
+/// What is short or broken may be there again when the same is asked for once more: no fault of the input.
 [[noreturn]] void refuse_reading(const std::string& name, int cause) {
+  if (cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO)
+    fail(ErrorKind::io, "{}: cannot be read now ({}); give the system what it lacks and try again", name,
+         std::generic_category().message(cause));
   fail(ErrorKind::input, "{}: cannot be read ({}); check its permissions", name,
        std::generic_category().message(cause));
 }

@@ -28,6 +28,7 @@ std::string to_text(const Answer& answer) {
                        {"answered", answer.answered},
                        {"figures", cells_json(answer.figures)},
                        {"timing", cells_json(answer.timing)},
+                       {"parameters", cells_json(answer.parameters)},
                        {"measures", ordered_json::array()},
                        {"inputs", answer.inputs}};
   for (const Measure& measure : answer.measures)
@@ -42,6 +43,7 @@ Answer answer_of(const std::string& text) {
                 .answered = json.at("answered"),
                 .figures = cells_of(json.at("figures")),
                 .timing = cells_of(json.at("timing")),
+                .parameters = cells_of(json.at("parameters")),
                 .measures = {},
                 .inputs = json.at("inputs")};
   for (const ordered_json& measure : json.at("measures"))

@@ -18,6 +18,7 @@ struct Answer {
   std::string error;     ///< why it is not "done"
   bool answered = true;  ///< it would come to the same again; a kill, a crash, a time or a memory limit need not
   std::map<std::string, Cell> figures, timing;  ///< by the names of Layout's columns
+  std::map<std::string, Cell> parameters;       ///< by their own names, as the run used them; empty: it never began
   std::vector<Measure> measures;
   std::map<std::string, std::string> inputs;  ///< file that the run read, its SHA-256
 };

@@ -1,8 +1,10 @@
 #include "engine/batch/database.hpp"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 #include "engine/base/error.hpp"
+#include "engine/base/user_file.hpp"
 
 namespace verisim::batch {
 namespace {
@@ -82,8 +84,25 @@ Cell Statement::column(int index) const {
   return std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_, index)));
 }
 
-Database::Database(const std::string& path) : path_(path) {
-  if (sqlite3_open_v2(path.c_str(), &database_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr) != SQLITE_OK) {
+std::string uri_to_read(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    if (c == '%' || c == '?' || c == '#')
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    else
+      uri += c;
+  }
+  uri += "?mode=ro";
+  // With a log beside it somebody may be writing; without one SQLite need not make one to read.
+  if (!identity_of(path + "-wal")) uri += "&immutable=1";
+  return uri;
+}
+
+Database::Database(const std::string& path, Access access) : path_(path) {
+  const bool writes = access == Access::write;
+  const int flags = SQLITE_OPEN_URI | (writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
+  const std::string name = writes ? path : uri_to_read(path);
+  if (sqlite3_open_v2(name.c_str(), &database_, flags, nullptr) != SQLITE_OK) {
     try {
       refuse(database_, path_);
     } catch (...) {
@@ -93,6 +112,7 @@ Database::Database(const std::string& path) : path_(path) {
   }
   constexpr int kWaitMs = 10'000;  // for somebody who reads the index meanwhile
   sqlite3_busy_timeout(database_, kWaitMs);
+  if (!writes) return;
   try {
     run("PRAGMA journal_mode=WAL");
     run("PRAGMA synchronous=NORMAL");  // a kill loses nothing; a power cut at most the last rows

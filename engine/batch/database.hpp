@@ -36,11 +36,16 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
+/// What names a database to be read, to sqlite3_open_v2 and ATTACH.
+[[nodiscard]] std::string uri_to_read(const std::string& path);
+
 class Database {
  public:
   /// Opens or makes the file; WAL, so that what one transaction wrote outlives a kill -9. Error(io): it cannot be
   /// opened or is damaged (Error(input)).
-  explicit Database(const std::string& path);
+  enum class Access { write, read };
+  /// To write it is made if it is not there; to read it neither it nor its folder has to be writable.
+  explicit Database(const std::string& path, Access access = Access::write);
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;

@@ -15,11 +15,15 @@ constexpr const char* kForms = "write LOW..HIGH, uniform:LOW:HIGH, normal:MEAN:S
 
 Distribution uniform(const std::string& what, double low, double high) {
   if (!(low < high)) fail(ErrorKind::usage, "{}: {} is not below {}; write LOW..HIGH", what, low, high);
+  if (!std::isfinite(high - low)) fail(ErrorKind::usage, "{}: {} to {} is too wide for a number", what, low, high);
   return {Distribution::Kind::uniform, low, high};
 }
 
 Distribution normal(const std::string& what, double mean, double sd) {
   if (!(sd >= 0)) fail(ErrorKind::usage, "{}: a standard deviation of {}; it must not be below 0", what, sd);
+  constexpr double kFarthest = 40;  // standard deviations: no double's draw is beyond
+  if (!std::isfinite(mean + kFarthest * sd) || !std::isfinite(mean - kFarthest * sd))
+    fail(ErrorKind::usage, "{}: draws about {} with a standard deviation of {} are beyond all numbers", what, mean, sd);
   return {Distribution::Kind::normal, mean, sd};
 }
 

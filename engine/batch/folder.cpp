@@ -83,6 +83,17 @@ std::unique_ptr<MarkedFile> lock_of(const std::string& path) {
   }
 }
 
+/// Of a merge that did not end nothing stays but its manifest, which the next one replaces.
+void clear_half_merged(const std::string& folder) {
+  const std::string index = index_of(folder);
+  for (const std::string& path :
+       {index, index + "-wal", index + "-shm", folder + "/index.csv", folder + "/timing.csv", folder + "/runs"}) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) refuse_write(path, error.message());
+  }
+}
+
 }  // namespace
 
 std::string first_difference(const ordered_json& there, const ordered_json& here,
@@ -93,7 +104,7 @@ std::string first_difference(const ordered_json& there, const ordered_json& here
   return difference("", a, b);
 }
 
-ordered_json read_manifest(const std::string& folder) {
+ordered_json read_json(const std::string& folder) {
   const std::string file = folder + "/" + kManifest;
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: holds no batch ({} is not there); name a folder of verisim batch", folder, kManifest);
@@ -103,13 +114,26 @@ ordered_json read_manifest(const std::string& folder) {
   return json;
 }
 
+bool is_half_merged(const ordered_json& manifest) {
+  return manifest.contains(kMerging);
+}
+
+ordered_json read_manifest(const std::string& folder) {
+  ordered_json manifest = read_json(folder);
+  if (is_half_merged(manifest))
+    fail(ErrorKind::input, "{}: 'batch merge' did not end here; call it again with the same folders", folder);
+  return manifest;
+}
+
 Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move(path)) {
   make_folder(path_);
   const std::string file = path_ + "/" + kManifest;
   if (!identity_of(file) && !identity_of(path_ + "/" + kLock) && holds_other_things(path_))
     fail(ErrorKind::io, "{}: holds no batch, but other things; name an empty folder or a new one with -o", path_);
   lock_ = lock_of(path_);
-  if (identity_of(file)) {
+  const bool merges_anew = is_half_merged(manifest) && (!identity_of(file) || is_half_merged(read_json(path_)));
+  if (merges_anew) clear_half_merged(path_);
+  if (identity_of(file) && !merges_anew) {
     const std::string found = first_difference(read_manifest(path_), manifest, {"machine", "scenario"});
     if (found.empty()) return;
     if (found.starts_with("version") || found.starts_with("commit") || found.starts_with("format"))
@@ -120,7 +144,11 @@ Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move
     fail(ErrorKind::input, "{}: holds another design: {}; name another folder with -o, or move this one away", path_,
          found);
   }
-  Replacement replacement(file, ".part");
+  write_manifest(manifest);
+}
+
+void Folder::write_manifest(const ordered_json& manifest) {
+  Replacement replacement(file(kManifest), ".part");
   replacement.write(manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   replacement.commit();
 }

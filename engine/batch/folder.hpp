@@ -13,7 +13,8 @@ class Folder {
  public:
   /// Makes the folder or goes on in it. `manifest` is what batch.json holds or has to hold: members below "machine" may
   /// differ. Error(input): it holds another design, which is named; Error(io): it holds other things, cannot be made,
-  /// or another batch writes in it.
+  /// or another batch writes in it. A
+  /// manifest that is half merged begins anew where another such one is.
   Folder(std::string path, const nlohmann::ordered_json& manifest);
   /// The lock alone stays: a name that another process may be waiting for is not taken away.
   ~Folder() = default;
@@ -22,6 +23,8 @@ class Folder {
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+  /// Replaces batch.json. Error(io).
+  void write_manifest(const nlohmann::ordered_json& manifest);
   /// runs/000123.h5, below the folder.
   [[nodiscard]] static std::string run_file(std::uint64_t run);
 
@@ -34,7 +37,13 @@ class Folder {
 [[nodiscard]] std::string index_of(const std::string& folder);
 
 /// batch.json of a folder. Error(input): there is none, or it is something else.
+[[nodiscard]] nlohmann::ordered_json read_json(const std::string& folder);
+/// Likewise, and Error(input) if what makes the folder is a merge that has not ended.
 [[nodiscard]] nlohmann::ordered_json read_manifest(const std::string& folder);
+
+/// Member of batch.json while shards are merged into its folder.
+inline constexpr const char* kMerging = "merging";
+[[nodiscard]] bool is_half_merged(const nlohmann::ordered_json& manifest);
 
 /// The first difference of two manifests but for "machine": "design/vary/clearance/values is [1,2] there and [1,3]
 /// here"; empty: none. Members of `ignored` count for nothing.

@@ -85,7 +85,8 @@ Layout layout_of(const ordered_json& json) {
   return {columns_of(json.at("parameters")), columns_of(json.at("figures")), columns_of(json.at("timing"))};
 }
 
-Index::Index(const std::string& path, const Layout& layout, const std::string& version) : Index(path) {
+Index::Index(const std::string& path, const Layout& layout, const std::string& version)
+    : Index(path, Database::Access::write) {
   const Cell format = database_->value("PRAGMA user_version");
   if (format == Cell(std::int64_t{0})) {
     layout_ = layout;
@@ -97,7 +98,7 @@ Index::Index(const std::string& path, const Layout& layout, const std::string& v
 
 Index Index::open(const std::string& path, const std::string& version) {
   if (!identity_of(path)) fail(ErrorKind::input, "{}: there is no such index; name a folder of verisim batch", path);
-  Index index(path);
+  Index index(path, Database::Access::read);
   index.check_version(version);
   return index;
 }
@@ -152,6 +153,13 @@ void Index::make_tables(const std::string& version) {
   });
 }
 
+std::vector<std::string> Index::inputs() {
+  std::vector<std::string> names;
+  Statement statement = database_->prepare("SELECT name FROM input ORDER BY name");
+  while (statement.step()) names.push_back(plain_text(statement.column(0)));
+  return names;
+}
+
 std::vector<std::uint64_t> Index::runs() {
   std::vector<std::uint64_t> all;
   Statement statement = database_->prepare("SELECT run FROM run ORDER BY run");
@@ -161,7 +169,8 @@ std::vector<std::uint64_t> Index::runs() {
 
 std::string Index::column_of(const Measure& measure) {
   std::vector<std::string> fixed = head_columns(layout_);
-  for (const IndexColumn& c : layout_.figures) fixed.push_back(c.name);
+  for (const auto& columns : {layout_.figures, layout_.timing})
+    for (const IndexColumn& c : columns) fixed.push_back(c.name);
   const bool taken = std::any_of(fixed.begin(), fixed.end(),
                                  [&](const std::string& name) { return lower(name) == lower(measure.name); });
   std::string column = taken ? "measure." + measure.name : measure.name;
@@ -302,7 +311,7 @@ std::uint64_t Index::count_unanswered() {
 }
 
 void Index::take_over(const std::string& path) {
-  Index other(path);
+  Index other(path, Database::Access::read);
   other.layout_ = layout_;
   const std::vector<std::string> measures = other.measure_columns();
   std::vector<std::pair<std::string, std::string>> units;
@@ -312,7 +321,7 @@ void Index::take_over(const std::string& path) {
   Statement names = other.database_->prepare("SELECT name, sha256 FROM input");
   while (names.step()) inputs.inputs[plain_text(names.column(0))] = plain_text(names.column(1));
   Statement attach = database_->prepare("ATTACH ? AS shard");
-  attach.bind(1, path);
+  attach.bind(1, uri_to_read(path));
   attach.step();
   database_->transaction([&] {
     add_inputs(inputs);

@@ -41,9 +41,11 @@ class Index {
   /// Opens or makes the index. Error(input): of another format, or made by another version of the program, with the
   /// remedy. Error(io).
   Index(const std::string& path, const Layout& layout, const std::string& version);
-  /// Opens one that is there already. Error(input): there is none.
+  /// Opens one that is there already, to be read. Error(input): there is none.
   [[nodiscard]] static Index open(const std::string& path, const std::string& version);
 
+  /// Names of the files that runs read.
+  [[nodiscard]] std::vector<std::string> inputs();
   /// The numbers of the runs that it holds, sorted.
   [[nodiscard]] std::vector<std::uint64_t> runs();
   /// A run's rows, in one transaction. Error(input): the run read another content of a file than a run before it, or
@@ -66,7 +68,7 @@ class Index {
   [[nodiscard]] std::uint64_t count_unanswered();
 
  private:
-  explicit Index(const std::string& path) : database_(std::make_unique<Database>(path)) {}
+  Index(const std::string& path, Database::Access access) : database_(std::make_unique<Database>(path, access)) {}
   void check_version(const std::string& version);
   void make_tables(const std::string& version);
   std::string column_of(const Measure& measure);

@@ -119,6 +119,7 @@ Shard read_shard(const std::string& text) {
   const Shard shard{whole_number(what, text.substr(0, slash)), whole_number(what, text.substr(slash + 1))};
   if (shard.index < 1 || shard.index > shard.of)
     fail(ErrorKind::usage, "{}: there is no such part; I goes from 1 to N", what);
+  if (shard.of > kRunsMax) fail(ErrorKind::usage, "{}: no batch has so many runs; N is at most {}", what, kRunsMax);
   return shard;
 }
 

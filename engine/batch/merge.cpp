@@ -61,15 +61,18 @@ void merge(const std::string& out, const std::vector<std::string>& shards, const
   }
   check_runs(shards, manifest.at("runs").get<std::uint64_t>(), version);
   manifest["shard"] = nullptr;
-  if (identity_of(out + "/batch.json"))
+  if (identity_of(out + "/batch.json") && !is_half_merged(read_json(out)))
     fail(ErrorKind::input, "{}: holds a batch already; name a new folder to merge into", out);
-  const Folder folder(out, manifest);
+  ordered_json unfinished = manifest;
+  unfinished[kMerging] = true;
+  Folder folder(out, unfinished);
   Index index(index_of(out), Index::open(index_of(shards.front()), version).layout(), version);
   for (const std::string& shard : shards) {
     index.take_over(index_of(shard));
     copy_run_files(shard, out, Index::open(index_of(shard), version).runs());
   }
   index.write_csv(out);
+  folder.write_manifest(manifest);
 }
 
 }  // namespace verisim::batch

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
@@ -84,7 +85,10 @@ class Batch {
   [[nodiscard]] std::string work(std::uint64_t run) const;
   void take(const batch::WorkerEnd& end);
   [[nodiscard]] Answer answer_to(const batch::WorkerEnd& end) const;
-  [[nodiscard]] batch::RowHead head_of(const batch::Point& point) const;
+  [[nodiscard]] batch::RowHead head_of(const batch::Point& point, const Answer& answer) const;
+  [[nodiscard]] std::string name_of(const batch::Point& point) const;
+  void add_row(const batch::Point& point, const Answer& answer);
+  void say_words(const std::string& words);
   void say_progress(std::uint64_t done, std::uint64_t all);
 
   const BatchOptions& o_;
@@ -98,7 +102,7 @@ class Batch {
   std::unique_ptr<batch::Folder> folder_;
   std::unique_ptr<batch::Index> index_;
   std::uint64_t failed_now_ = 0;
-  std::set<std::string> said_;  ///< by workers that came to their end
+  std::set<std::string> said_;  ///< lines, by workers that came to their end
   StopWatch watch_;
   double wall_s_ = 0;
   std::unique_ptr<ProgressLine> line_;
@@ -177,11 +181,13 @@ ordered_json Batch::manifest() const {
             {"compiler", compiler()}}}};
 }
 
-batch::RowHead Batch::head_of(const batch::Point& point) const {
+/// Parameters as the design has them; the others as the run used them or, if it never began, as they are declared.
+batch::RowHead Batch::head_of(const batch::Point& point, const Answer& answer) const {
   batch::RowHead head{.run = point.run, .seed = point.seed, .parameters = {}};
   const std::vector<std::string> keys = design_.keys();
   for (const ParameterDeclaration& p : declared_) {
-    Cell cell = batch::cell_of(ordered_json::parse(p.value_json));
+    const auto used = answer.parameters.find(p.name);
+    Cell cell = used != answer.parameters.end() ? used->second : batch::cell_of(ordered_json::parse(p.value_json));
     for (std::size_t i = 0; i < keys.size(); ++i)
       if (keys[i] == p.name) cell = point.values[i].cell;
     head.parameters.push_back(std::move(cell));
@@ -231,6 +237,54 @@ Answer Batch::answer_to(const batch::WorkerEnd& end) const {
   return answer;
 }
 
+/// run 3 (clearance=0.001, seed 7)
+std::string Batch::name_of(const batch::Point& point) const {
+  std::string at;
+  const std::vector<std::string> keys = design_.keys();
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    at += fmt::format("{}={}, ", keys[i], batch::plain_text(point.values[i].cell));
+  return fmt::format("run {} ({}seed {})", point.run, shown(at, 200), point.seed);
+}
+
+/// Error(input) if the run is none of this batch: a file was changed, or is gone, since the batch began.
+void Batch::add_row(const batch::Point& point, const Answer& answer) {
+  const fs::path folder = fs::path(run_options_.scenario.path).parent_path();
+  const std::string scenario = fs::path(run_options_.scenario.path).filename().string();
+  const auto read = answer.inputs.find(scenario);
+  if (read != answer.inputs.end() && read->second != scenario_sha256_)
+    fail(ErrorKind::input,
+         "{}: was changed while the batch ran: its runs would not be of one scenario; put the former content back, or "
+         "name another folder with -o",
+         shown(scenario));
+  if (answer.status != "done" && answer.answered)
+    for (const std::string& name : index_->inputs())
+      if (!identity_of((folder / name).string()) && !identity_of(name))
+        fail(ErrorKind::input,
+             "{}: is gone since the batch began: its runs would not be of one scenario; put it back, or name another "
+             "folder with -o",
+             shown(name));
+  try {
+    index_->add(head_of(point, answer), answer);
+  } catch (const Error& error) {
+    fail(error.kind(), "{}: {}", name_of(point), error.what());
+  }
+}
+
+/// What workers said that came to their end: each line once.
+void Batch::say_words(const std::string& words) {
+  constexpr std::size_t kLinesMax = 20;
+  if (o_.quiet) return;
+  std::istringstream lines(words);
+  for (std::string line; std::getline(lines, line);) {
+    if (said_.size() > kLinesMax || !said_.insert(line).second) continue;
+    line_->say("");
+    const bool last = said_.size() > kLinesMax;
+    std::fprintf(stderr, "%s\n",
+                 last ? "what runs say further is not shown; the column warning of index.csv has their first"
+                      : shown(line).c_str());
+  }
+}
+
 void Batch::take(const batch::WorkerEnd& end) {
   const batch::Point point = design_.point(end.run);
   Answer answer = answer_to(end);
@@ -240,20 +294,13 @@ void Batch::take(const batch::WorkerEnd& end) {
     remove_run_files(run_options_, end.run);
   const std::string file = batch::Folder::run_file(end.run);
   answer.figures["run_file"] = identity_of(folder_->file(file)) ? file : "";
-  index_->add(head_of(point), answer);
-  if (end.exit_code == 0 && !o_.quiet && said_.insert(end.last_words).second)
-    std::fprintf(stderr, "%s", shown_lines(end.last_words).c_str());
+  add_row(point, answer);
+  if (end.exit_code == 0) say_words(end.last_words);
   if (done) return;
   ++failed_now_;
   if (o_.quiet) return;
-  std::string at;
-  const std::vector<std::string> keys = design_.keys();
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    at += fmt::format("{}={}, ", keys[i], batch::plain_text(point.values[i].cell));
   line_->say("");
-  std::fprintf(stderr, "run %llu (%sseed %llu): %s: %s\n", static_cast<unsigned long long>(end.run),
-               shown(at, 200).c_str(), static_cast<unsigned long long>(point.seed), answer.status.c_str(),
-               answer.error.c_str());
+  std::fprintf(stderr, "%s: %s: %s\n", name_of(point).c_str(), answer.status.c_str(), answer.error.c_str());
 }
 
 std::string time_text(double seconds) {

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <filesystem>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "engine/base/error.hpp"
@@ -12,6 +13,7 @@
 #include "engine/cli/memory_wanted.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/recorded_run.hpp"
+#include "engine/session/warnings.hpp"
 #include "engine/simulation/frame_cost.hpp"
 
 namespace verisim::cli {
@@ -55,6 +57,9 @@ void for_each_column(const RunFigure& figure, const RunFigures& run, const Take&
 void add_own_columns(batch::Layout& layout, bool measure) {
   layout.figures.push_back(
       {"insertion_s", "REAL", "s", "simulated time at which the outcome became inserted or assembled and stayed so"});
+  layout.figures.push_back(
+      {"warnings", "INTEGER", "1", "warnings of the scene and of its frames, errors of frame actions among them"});
+  layout.figures.push_back({"warning", "TEXT", "", "the first of them"});
   if (measure)
     for (const IndexColumn& c :
          {IndexColumn{"overlap_m", "REAL", "m", "deepest true overlap of two bodies, by the ruler, from poses alone"},
@@ -154,15 +159,33 @@ Answer out_of_memory() {
   return answer;
 }
 
-Answer computed(const BatchRunOptions& options, const ScenarioOptions& scenario, std::uint64_t run) {
+/// How many warnings the run gave, and the first: those of the scene, then those of its frames.
+void add_warnings(Answer& answer, const std::vector<std::string>& of_scene, const LoopResult& of_frames) {
+  const std::uint64_t count = of_scene.size() + of_frames.warning_count;
+  answer.figures["warnings"] = batch::cell_of(count);
+  if (count > 0) answer.figures["warning"] = shown(of_scene.empty() ? of_frames.first_warning : of_scene.front());
+}
+
+/// Parameters as the run used them: precision = "auto" chooses some.
+void add_parameters(Answer& answer, const Session& session) {
+  const auto parameters = nlohmann::ordered_json::parse(session.scenario->parameters_json());
+  for (const auto& [name, value] : parameters.items()) answer.parameters[name] = batch::cell_of(value);
+}
+
+/// @param inputs  what the run reads; the session's once that is open
+Answer computed(const BatchRunOptions& options, const ScenarioOptions& scenario, std::uint64_t run,
+                std::unique_ptr<Inputs>& inputs, Session& session) {
   const bool recorded = options.measure || options.keep != BatchRunOptions::Keep::summary;
   const std::string file = options.folder + "/" + batch::Folder::run_file(run);
-  auto inputs = std::make_unique<Inputs>(
+  inputs = std::make_unique<Inputs>(
       Inputs::live(std::filesystem::path(scenario.path).parent_path().string(), named_paths(scenario), options.store));
   std::vector<MeasuredBody> bodies;
-  Session session = open_session(scenario, std::move(inputs), options.threads, true, [&](const Scene& scene) {
+  session = open_session(scenario, std::move(inputs), options.threads, false, [&](const Scene& scene) {
     if (options.measure) bodies = measured_bodies(scene);
   });
+  std::vector<std::string> warnings;
+  for (const Event& event : session.simulation->events())
+    if (is_any_warning(event)) warnings.push_back(event.text);
   FrameCost cost;
   RecordedRun made = record_run(session, {.file = recorded ? file : "", .force = true, .after_frame = [&] {
                                             for (const CostCounter& counter : kCostCounters)
@@ -174,9 +197,11 @@ Answer computed(const BatchRunOptions& options, const ScenarioOptions& scenario,
   answer.status = status_of(made.loop.end);
   answer.error = shown(made.loop.error);
   add_figures(answer, session, made.figures, cost);
+  add_parameters(answer, session);
+  add_warnings(answer, warnings, made.loop);
+  print_warnings(made.loop.warnings);
   if (options.measure) add_overlap(answer, file, std::move(bodies));
   warn_of_damage(options.store.get());
-  for (const InputFile& input : session.inputs->files()) answer.inputs[input.name] = input.sha256;
   return answer;
 }
 
@@ -211,8 +236,10 @@ void remove_run_files(const BatchRunOptions& options, std::uint64_t run) {
 
 Answer answer_of_run(const BatchRunOptions& options, const ScenarioOptions& scenario, std::uint64_t run) {
   Answer answer;
+  std::unique_ptr<Inputs> inputs;
+  Session session;
   try {
-    answer = computed(options, scenario, run);
+    answer = computed(options, scenario, run, inputs, session);
   } catch (const Error& error) {
     answer = refusal(error);
   } catch (const std::bad_alloc&) {
@@ -220,6 +247,9 @@ Answer answer_of_run(const BatchRunOptions& options, const ScenarioOptions& scen
   } catch (const std::length_error&) {  // more than any memory could hold
     answer = out_of_memory();
   }
+  // Of a run that was refused, too: what it read may have been changed since the batch began.
+  if (const Inputs* read = session.inputs ? session.inputs.get() : inputs.get())
+    for (const InputFile& input : read->files()) answer.inputs[input.name] = input.sha256;
   return answer;
 }
 

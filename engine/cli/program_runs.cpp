@@ -156,6 +156,10 @@ bool is_run(const std::vector<std::string>& arguments) {
 /// Of `run`: a run file of its own, and its summary as JSON.
 std::vector<std::string> arguments_of(const ProgramsAsked& asked, const std::string& run_file) {
   std::vector<std::string> arguments = asked.arguments;
+  if (!arguments.empty() && arguments[0] == "batch")
+    fail(ErrorKind::usage,
+         "a batch that is done is not done again, so the second call measures nothing; compare two batch folders, or "
+         "one run of it: -- run SCENARIO");
   if (!is_run(arguments)) return arguments;
   const auto has = [&](const std::string& option) {
     return std::any_of(arguments.begin(), arguments.end(),

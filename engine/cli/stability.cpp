@@ -48,13 +48,26 @@ struct StabilityOptions {
   bool quiet = false;
 };
 
+std::unique_ptr<Inputs> inputs_of(const ScenarioOptions& options) {
+  const fs::path folder = fs::path(options.path).parent_path();
+  return std::make_unique<Inputs>(
+      Inputs::live(folder.empty() ? "." : folder.string(), named_paths(options), prepared_parts()));
+}
+
+ScenarioOptions ledger_options(const StabilityOptions& o, const std::string& path) {
+  ScenarioOptions options;
+  options.path = path;
+  options.sets = split_pairs("--set", o.sets);
+  options.duration = o.duration;
+  if (o.scenario.empty() && !o.all && !o.duration) options.duration = kShort;
+  return options;
+}
+
 /// The energy of a scenario's run.
 Row ledger_of(const ScenarioOptions& options) {
   const fs::path path(options.path);
   std::unique_ptr<stability::EnergyAudit> audit;
-  const std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
-  auto inputs = std::make_unique<Inputs>(Inputs::live(folder, named_paths(options), prepared_parts()));
-  Session session = open_session(options, std::move(inputs), 1, true,
+  Session session = open_session(options, inputs_of(options), 1, true,
                                  [&](const Scene& scene) { audit = std::make_unique<stability::EnergyAudit>(scene); });
   Simulation& simulation = *session.simulation;
   audit->start(simulation);
@@ -80,16 +93,14 @@ void add_ledgers(const StabilityOptions& o, std::vector<Task>& tasks) {
     paths = {end_of_links(o.scenario)};
   } else {
     const std::string folder = o.scenarios.empty() ? scenarios_folder() : o.scenarios;
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+      fail(ErrorKind::input, "{}: there is no such folder; name that of the shipped scenarios", folder);
     for (const char* name : kShipped) paths.push_back(fmt::format("{}/{}.lua", folder, name));
   }
   for (const std::string& path : paths) {
-    ScenarioOptions options;
-    options.path = path;
-    options.sets = split_pairs("--set", o.sets);
-    options.duration = o.duration;
-    if (o.scenario.empty() && !o.all && !o.duration) options.duration = kShort;
-    tasks.push_back(
-        {"", RowKind::ledger, fs::path(path).filename().string(), false, [options] { return ledger_of(options); }});
+    tasks.push_back({"", RowKind::ledger, fs::path(path).filename().string(), false,
+                     [options = ledger_options(o, path)] { return ledger_of(options); }});
   }
 }
 
@@ -142,9 +153,30 @@ std::vector<StabilityRow> compute(std::vector<Task> tasks, const StabilityOption
   return rows;
 }
 
+/// Error(usage): what only ledgers use was said, and there will be none.
+void check_ledgers_wanted(const StabilityOptions& o) {
+  if (o.only.empty() || std::find(o.only.begin(), o.only.end(), "ledgers") != o.only.end()) return;
+  for (const auto& [is_said, what] : {std::pair{!o.scenario.empty(), "SCENARIO"},
+                                      {!o.sets.empty(), "--set"},
+                                      {o.duration.has_value(), "--duration"},
+                                      {!o.scenarios.empty(), "--scenarios"}})
+    if (is_said) fail(ErrorKind::usage, "{} is for ledgers, and --only leaves them out; add --only ledgers", what);
+}
+
+/// Of one scenario that was named: what it refuses is this command's error, not a row. It is opened and not run.
+void check_scenario(const StabilityOptions& o, const std::vector<Task>& tasks) {
+  const bool wanted = std::any_of(tasks.begin(), tasks.end(), [](const Task& t) { return t.kind == RowKind::ledger; });
+  if (o.scenario.empty() || !wanted) return;
+  const ScenarioOptions options = ledger_options(o, end_of_links(o.scenario));
+  (void)open_session(options, inputs_of(options), 1, true);
+}
+
 int run_stability(const StabilityOptions& o) {
+  check_ledgers_wanted(o);
   if (!o.out.path.empty()) check_folder(o.out.path, o.out.force);
-  const std::vector<StabilityRow> rows = compute(tasks_of(o), o);
+  std::vector<Task> tasks = tasks_of(o);
+  check_scenario(o, tasks);
+  const std::vector<StabilityRow> rows = compute(std::move(tasks), o);
   if (!o.out.path.empty()) write_folder(o.out.path, o.out.force, rows);
   std::printf("%s%s", o.json ? json_text(json_of(rows)).c_str() : tables_of(rows).c_str(), o.json ? "\n" : "");
   return broken_promises(rows).empty() ? 0 : static_cast<int>(ErrorKind::check_failed);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -96,7 +97,12 @@ void print_table(const Table& table) {
   std::printf("%s", tradeoff::text_of_peers(ordered_json::parse(table.peers_json)).c_str());
 }
 
-/// 1 and a line on stderr if no setting keeps the bounds.
+bool all_failed(const Table& table) {
+  return !table.rows.empty() && std::all_of(table.rows.begin(), table.rows.end(),
+                                            [](const tradeoff::Row& row) { return !row.failed.empty(); });
+}
+
+/// 1 and a line on stderr if no setting keeps the bounds, or none has figures.
 int tell(const Table& table, const Question& question, bool as_json) {
   const bool asked = question.bounds.budget_us || question.bounds.error;
   std::optional<std::size_t> setting;
@@ -111,6 +117,10 @@ int tell(const Table& table, const Question& question, bool as_json) {
     print_table(table);
     if (setting)
       std::printf("setting: %s (%zu)\n", tradeoff::text_of(table.rows[*setting].parameters).c_str(), *setting);
+  }
+  if (all_failed(table)) {
+    print_error(("no setting has figures; the first: " + table.rows.front().failed).c_str());
+    return static_cast<int>(ErrorKind::check_failed);
   }
   if (!asked || setting) return 0;
   print_error(("no setting keeps " + tradeoff::text_of(question.bounds) + "; vary more, or ask for less").c_str());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "engine/base/error.hpp"
@@ -53,6 +54,16 @@ void read_context(const json& context, BenchmarkFile& to) {
   }
 }
 
+/// What Google Benchmark itself says of a repetition: all else is a counter of the benchmark's.
+bool is_google_own(const std::string& key) {
+  static const std::set<std::string> kOwn = {"family_index",     "per_family_instance_index",
+                                             "repetitions",      "repetition_index",
+                                             "threads",          "iterations",
+                                             "real_time",        "cpu_time",
+                                             "bytes_per_second", "items_per_second"};
+  return kOwn.count(key) > 0;
+}
+
 /// Adds a repetition, or nothing for a mean, median or deviation.
 void read_entry(const std::string& path, const json& entry, BenchmarkFile& to) {
   if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string())
@@ -72,12 +83,39 @@ void read_entry(const std::string& path, const json& entry, BenchmarkFile& to) {
   if (same->unit != unit) fail(ErrorKind::input, "{}: {}: its repetitions have several units", path, shown(name, 100));
   same->real.push_back(time_in(path, name, entry, "real_time"));
   same->cpu.push_back(time_in(path, name, entry, "cpu_time"));
+  for (const auto& [key, value] : entry.items())
+    if (value.is_number() && !is_google_own(key)) same->counters[key].push_back(value.get<double>());
 }
 
 /// B's times in A's unit.
 std::vector<double> scaled(std::vector<double> times, double factor) {
   for (double& time : times) time *= factor;
   return times;
+}
+
+/// The one value that a counter has in all repetitions, two or more.
+std::optional<double> count_of(const Benchmark& benchmark, const std::string& counter) {
+  const auto found = benchmark.counters.find(counter);
+  if (found == benchmark.counters.end()) return {};
+  const std::vector<double>& values = found->second;
+  const bool is_one = std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
+  return is_one && values.size() > 1 && values.size() == benchmark.real.size() ? std::optional(values.front())
+                                                                               : std::nullopt;
+}
+
+void compare_counts(const Benchmark& a, const Benchmark& b, Comparison& to) {
+  std::set<std::string> names;
+  for (const Benchmark* benchmark : {&a, &b})
+    for (const auto& [name, values] : benchmark->counters) names.insert(name);
+  for (const std::string& name : names) {
+    const std::string whole = a.name + " " + name;
+    if (a.counters.count(name) == 0) to.only_b.push_back(whole);
+    if (b.counters.count(name) == 0) to.only_a.push_back(whole);
+    const std::optional<double> of_a = count_of(a, name), of_b = count_of(b, name);
+    if (!of_a || !of_b) continue;
+    ++to.counts_compared;
+    if (*of_a != *of_b) to.counts.push_back({.name = whole, .a = *of_a, .b = *of_b, .change = Change::changed});
+  }
 }
 
 void note_context(const BenchmarkFile& a, const BenchmarkFile& b, Comparison& to) {
@@ -134,6 +172,7 @@ Comparison compare_benchmarks(const std::string& path_a, const std::string& path
       c.only_a.push_back(of_a.name);
       continue;
     }
+    compare_counts(of_a, *of_b, c);
     const double factor = nanoseconds_of(of_b->unit) / nanoseconds_of(of_a.unit);
     const bool by_real = goes_by_real_time(of_a.name);
     // The one that counts has the benchmark's own name.

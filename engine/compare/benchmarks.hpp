@@ -1,9 +1,12 @@
 // Files that Google Benchmark wrote (--benchmark_out=FILE --benchmark_repetitions=N, JSON), two compared or one read.
 // The repetitions are taken one by one; means and deviations that the file has beside them are not used. Of real and
 // CPU time the one that the benchmark itself goes by is judged, as its name tells (…/real_time, …/manual_time; else CPU
-// time), and the other shown: judging both would double the chance of a false alarm.
+// time), and the other shown: judging both would double the chance of a false alarm. A counter of the benchmark's own
+// that has one value in all repetitions (two or more) of both files is a count and has to be equal; others scatter as
+// times do, and are not judged.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,7 @@ namespace verisim::compare {
 struct Benchmark {
   std::string name, unit;  ///< unit: ns, us, ms, s
   std::vector<double> real, cpu;
+  std::map<std::string, std::vector<double>> counters{};  ///< its own, a value a repetition that has them
 };
 
 struct BenchmarkFile {

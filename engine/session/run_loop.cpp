@@ -165,8 +165,10 @@ LoopResult run_loop(Simulation& simulation, Recorder* recorder, const LoopOption
       if (simulation.cost().contacts > 0) result.collision_frame_ns.push_back(timing.frame_ns);
       rows.take();
       const std::vector<Event>& events = simulation.events();
-      for (std::size_t e = i == 0 ? said : 0; e < events.size(); ++e)
+      for (std::size_t e = i == 0 ? said : 0; e < events.size(); ++e) {
         if (is_warning(events[e])) result.warnings.push_back(events[e].text);
+        if (is_any_warning(events[e]) && result.warning_count++ == 0) result.first_warning = events[e].text;
+      }
       simulation.clear_events();
       if (options.progress && end - last_progress > std::chrono::milliseconds(200)) {
         options.progress(i + 1);

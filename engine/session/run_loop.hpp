@@ -25,6 +25,8 @@ struct LoopResult {
   LoopEnd end = LoopEnd::done;
   std::string error;                  ///< for diverged, io_failed and refused
   std::vector<std::string> warnings;  ///< events of the run that are warnings (warnings.hpp)
+  std::uint64_t warning_count = 0;    ///< of any kind (is_any_warning)
+  std::string first_warning;          ///< of these
   std::uint64_t overruns = 0;
   std::vector<std::uint32_t> block_overruns;        ///< of each whole block of frames, if empty blocks are measured
   std::vector<std::uint32_t> empty_block_overruns;  ///< of the empty block after each

@@ -45,14 +45,13 @@ void check_duration(const SimulationParameters& parameters, bool from_command_li
 
 }  // namespace
 
-Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads, bool quiet,
+Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs>&& inputs, unsigned threads, bool quiet,
                      const std::function<void(Scene&)>& look) {
   const StopWatch watch;
   const MemoryUse use("building the scene of " + options.path);
   Session session;
   session.options = options;
-  session.inputs = std::move(inputs);
-  session.scenario = std::make_unique<Scenario>(options, *session.inputs);
+  session.scenario = std::make_unique<Scenario>(options, *inputs);
   Scene scene = session.scenario->take_scene();
   if (look) look(scene);
   session.seed = scene.parameters.seed;
@@ -64,8 +63,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
   for (const auto& device : scene.devices)
     for (const std::string& idle : device->idle())
       notices.push_back("device '" + idle + "' is driven by nothing and stays at its home pose; --bind drives it");
-  session.simulation =
-      std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads, session.inputs->store()});
+  session.simulation = std::make_unique<Simulation>(std::move(scene), SimulationOptions{threads, inputs->store()});
   const auto warn = [&](const std::string& text) {
     if (!quiet) std::fprintf(stderr, "warning: %s\n", shown(text).c_str());
   };
@@ -78,6 +76,7 @@ Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inp
     session.simulation->add_event("warning", notice);
   }
   session.scenario->attach(*session.simulation);
+  session.inputs = std::move(inputs);
   session.load_s = watch.seconds();
   return session;
 }

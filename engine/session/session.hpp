@@ -21,8 +21,9 @@ struct Session {
 };
 
 /// Reads scenario and models, builds the simulation. Notices go to stderr (unless quiet) and to the events.
-/// `look`, if given, sees the scene before the simulation takes it, and may change it.
-[[nodiscard]] Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs> inputs, unsigned threads,
+/// `look`, if given, sees the scene before the simulation takes it, and may change it. `inputs` are the session's if it
+/// opens; else they stay, with what was read.
+[[nodiscard]] Session open_session(const ScenarioOptions& options, std::unique_ptr<Inputs>&& inputs, unsigned threads,
                                    bool quiet, const std::function<void(Scene&)>& look = {});
 
 /// Of a symbolic link what it leads to: its folder is the scenario's, with the models and scripts in it. Error(input):

@@ -14,6 +14,11 @@ namespace verisim {
   return event.kind == "hybrid" || event.kind == "gravity" || event.kind == "sinking" || event.kind == "overlap";
 }
 
+/// Likewise, and those that the script's own words and errors are: they are said when they come.
+[[nodiscard]] inline bool is_any_warning(const Event& event) {
+  return is_warning(event) || event.kind == "warning" || event.kind == "script error";
+}
+
 /// One line each; of very many the first, for /events has them all.
 inline void print_warnings(const std::vector<std::string>& texts) {
   constexpr std::size_t kMost = 8;

@@ -76,6 +76,8 @@ double gap(const Bounds& a, const Bounds& b) {
 
 namespace {
 
+constexpr double kLargestVoxel = 1e12;  // m: sums and squares of such lengths are still numbers
+
 bool can_move(const Scene& scene, std::size_t index) {
   const BodyDescription& body = scene.bodies[index];
   if (body.fixed) return false;
@@ -158,6 +160,9 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
     fail(ErrorKind::input, "'{}': its start pose is not finite", body.name);
   if (!is_finite(description.twist.linear) || !is_finite(description.twist.angular))
     fail(ErrorKind::input, "'{}': its start velocity is not finite", body.name);
+  if (!(description.voxel_size <= kLargestVoxel))
+    fail(ErrorKind::input, "'{}': voxelsize is {:g} m, more than the {:g} m that are computed with; mm(8) is usual",
+         body.name, description.voxel_size, kLargestVoxel);
   body.rigid.set_pose(description.X_WB);
   body.rigid.v_C = description.twist.linear;
   body.rigid.omega = description.twist.angular;

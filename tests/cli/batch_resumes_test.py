@@ -145,6 +145,56 @@ class Resumption(Batches):
         self.write("part.lua", "return 2")
         self.refuse(3, ["part.lua", "was changed"], "batch", self.scenario, "-o", self.path("b"), *args)
 
+    def test_a_script_that_fails_because_it_was_changed_is_no_row(self):
+        part = self.write("part.lua", "return 1")
+        text = MANY + "\nrequire 'part'\n"
+        self.scenario = self.write("many.lua", text)
+        args = ["--vary", "speed=0.4,0.5", "--jobs", 1, *LIGHT]
+
+        def is_refused(words):
+            self.refuse(3, words, "batch", self.scenario, "-o", self.path("b"), *args)
+            with self.database(os.path.join(self.path("b"), "index.sqlite")) as db:
+                self.assertEqual(db.execute("SELECT count(*) FROM run").fetchone(), (1,))
+        self.batch_json("whole", *args)
+        self.batch_json("b", *args)
+        with self.database(os.path.join(self.path("b"), "index.sqlite")) as db:
+            for table in ("run", "timing"):
+                db.execute(f"DELETE FROM {table} WHERE run = 1")
+        self.write("part.lua", "error('edited')")
+        is_refused(["part.lua", "was changed"])
+        os.remove(part)
+        is_refused(["part.lua", "is gone"])
+        self.write("part.lua", "return 1")
+        self.batch_json("b", *args)
+        self.assertEqual(self.index("b"), self.index("whole"))
+
+    def test_want_of_the_system_is_no_answer(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_NOFILE, (12, 12))
+        args = ["--vary", "speed=0.4,0.5", "--jobs", 1, *LIGHT]
+        done = self.batch("b", *args, preexec_fn=limit)
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertEqual(self.batch_json("b", *args)["done"], 2)
+
+    def test_a_merge_reads_and_can_be_done_again(self):
+        args = ["--vary", "speed=0.4,0.45,0.5", "--repeat", 8, *LIGHT]
+        self.batch_json("whole", *args)
+        shards = [self.path(f"s{i}") for i in (1, 2)]
+        for i, shard in enumerate(shards):
+            self.batch_json(shard, *args, "--shard", f"{i + 1}/2")
+        before = {shard: sorted(os.listdir(shard)) for shard in shards}
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
+        merge = ["batch", "merge", self.path("all"), *shards]
+        done = self.run_program(*merge, preexec_fn=limit)
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.refuse(3, ["'batch merge' did not end here"], "batch", self.scenario, "-o", self.path("all"), *args)
+        self.succeed(*merge)
+        self.assertEqual(self.index("all"), self.index("whole"))
+        self.refuse(3, ["holds a batch already"], *merge)
+        self.assertEqual(before, {shard: sorted(os.listdir(shard)) for shard in shards}, "shards are read alone")
+
     def test_two_batches_in_one_folder(self):
         process = self.start("b", "--vary", "misbehave=hang")
         self.wait_for(lambda: len(children(process.pid)) == 1)

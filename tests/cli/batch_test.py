@@ -238,6 +238,39 @@ class BadInput(Batches):
         self.refuse(2, "SCENARIO", "batch", "--vary", "speed=1")
         self.refuse(3, "nowhere.lua", "batch", "nowhere.lua", "--vary", "speed=1")
 
+    def test_figures_beyond_all_numbers_are_refused(self):
+        for words, args in ((["too wide"], ["--random", 2, "speed=uniform:-1e308:1e308"]),
+                            (["beyond all numbers"], ["--random", 2, "speed=normal:1.7e308:1e308"]),
+                            (["at most"], ["--vary", "speed=1,2", "--shard", f"3/{2**64 - 1}"])):
+            self.refuse(2, words, "batch", self.scenario, "-o", self.path("b"), *args)
+        design = self.write("design.csv", 'misbehave\nno\n""\nno\n')
+        self.refuse(3, ["design.csv:3", "is empty"], "batch", self.scenario, "-o", self.path("b"), "--design", design)
+
+    def test_warnings_are_told_and_stand_in_the_index(self):
+        scenario = self.write("warns.lua", """
+            local p = params{k = 1}
+            addObject{name = "box", voxelsize = 0.01, Solid.box{0.1, 0.1, 0.1}}
+            defineSimulationParameters{duration = 0.05}
+            addDevice(Devices.Sensable.PhantomOmni{name = "omni", scale = 1})
+            measure("wall_s", p.k, "m")
+            Actions.addFrameAction(function() if p.k > 1 then error("no") end end)
+            """)
+        done = self.run_program("batch", scenario, "--vary", "k=1,2", "--repeat", 3, "-o", self.path("b"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("'omni' is driven by nothing"), 1, done.stderr)
+        self.assertIn("warns.lua:7: no", done.stderr)
+        rows = self.rows("b")
+        more = int(rows[3]["warnings"]) - int(rows[0]["warnings"])
+        self.assertEqual(more, 1)
+        self.assertTrue(all("driven by nothing" in row["warning"] for row in rows), rows)
+        self.assertEqual([row["measure.wall_s"] for row in rows], ["1"] * 3 + ["2"] * 3, "timing has a wall_s of its own")
+        self.assertEqual(self.run_program("batch", scenario, "--vary", "k=1,2", "-o", self.path("q"), "--quiet").stderr, "")
+
+    def test_a_measure_that_changes_its_unit_names_its_run(self):
+        scenario = self.write("unit.lua", 'local p = params{unit = "m"} measure("d", 1, p.unit)')
+        self.refuse(3, ["run 1 (unit=mm", "measure 'd' has the unit 'm' in one run and 'mm' in another"],
+                    "batch", scenario, "--vary", "unit=m,mm", "--jobs", 1, "--duration", "0.01", "-o", self.path("b"))
+
     def test_a_folder_that_cannot_be_written(self):
         self.write("file", "x")
         for folder in ["/proc/batch", self.path("file"), os.path.join(self.path("file"), "b")]:

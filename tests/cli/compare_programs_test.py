@@ -63,6 +63,7 @@ class Programs(Compare):
             self.assertFalse(os.path.exists(self.path("x.h5")))
         self.refuse(2, "--runs", "compare", "--runs", "5", scenario, scenario)
         self.refuse(2, "--help", "compare", "--programs", VERISIM, VERISIM, "--runs", "0", "--", "run", scenario)
+        self.refuse(2, "a batch that is done", "compare", "--programs", VERISIM, VERISIM, "--", "batch", scenario)
 
     def test_o_replaces_nothing_but_times_and_looks_first(self):
         precious = self.write("precious.txt", "mine")

@@ -224,6 +224,19 @@ class Benchmarks(Compare):
         self.assertIn("only in A: BM_old", text)
         self.assertIn("only in B: BM_new", text)
 
+    def test_counters_that_do_not_scatter_are_counts(self):
+        def with_counters(contacts, times):
+            report = json.loads(benchmark_json({"BM": scattered(1, 9, 1)}))
+            for entry, time in zip(report["benchmarks"], times):
+                entry["contacts"], entry["best_us"] = contacts, time
+            return json.dumps(report)
+        same = self.compare(*self.files(with_counters(5, range(9)), with_counters(5, range(1, 10))), code=0)
+        self.assertEqual((same["verdict"], same["counts"]), ("same", []))
+        other = self.compare(*self.files(with_counters(5, range(9)), with_counters(6, range(9))), code=1)
+        self.assertEqual((other["verdict"], [c["name"] for c in other["counts"]]), ("different", ["BM contacts"]))
+        gone = self.compare(*self.files(with_counters(5, range(9)), benchmark_json({"BM": scattered(1, 9, 1)})), code=1)
+        self.assertEqual(gone["only_a"], ["BM best_us", "BM contacts"])
+
     def test_one_repetition_is_no_verdict(self):
         a, b = self.files(benchmark_json({"BM": scattered(1, 1, 1)}), benchmark_json({"BM": scattered(9, 1, 1)}))
         report = self.compare(a, b, code=0)

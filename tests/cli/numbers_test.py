@@ -37,6 +37,10 @@ class Numbers(ProgramTest):
             self.succeed("replay", run_file, "--verify")
         self.assertEqual(len(hashes), 6)
 
+    def test_lengths_beyond_all_measure(self):
+        for size in ("1e13", "1e200", "1e308"):
+            self.refuse(3, ["voxelsize is", "usual"], "run", "small.lua", "-o", "a.h5", "--set", "voxelsize=" + size)
+
     def test_durations_that_are_none(self):
         for command in (["run", "small.lua", "-o", "a.h5"], ["wii", "serve", "--trajectory", "static", "--port", "0"],
                         ["wii", "listen", "W@127.0.0.1:1", "-o", "t.csv"]):

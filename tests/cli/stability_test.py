@@ -34,13 +34,17 @@ class Stability(ProgramTest):
         self.assertLess(abs(sum(figures[k] for k in ("kinetic", "coupling", "gravity", "dissipated", "contact", "numerical"))
                             - figures["input"]), 1e-9)
 
-    def test_a_scenario_that_cannot_be_read_is_a_row_and_a_failure(self):
-        self.write("broken.lua", "addObject{")
-        done = self.run_program("stability", "--only", "ledgers", "--json", "broken.lua")
-        self.assertEqual(done.returncode, 1)
-        ledger, = json.loads(done.stdout)["ledgers"]
-        self.assertEqual((ledger["outcome"], ledger["holds"]), ("refused", False))
-        self.assertIn("broken.lua:1", ledger["why"])
+    def test_a_scenario_that_is_named_and_cannot_be_read_is_an_error(self):
+        broken = self.write("broken.lua", "addObject{")
+        self.refuse(3, "broken.lua:1", "stability", "--only", "ledgers", broken)
+        fine = self.write("fine.lua", "local p = params{speed = 1}")
+        self.refuse(3, ["no parameter 'spede'", "speed"], "stability", "--only", "ledgers", fine, "--set", "spede=1")
+
+    def test_what_is_for_ledgers_alone_is_not_ignored(self):
+        self.refuse(2, ["SCENARIO", "--only ledgers"], "stability", "--only", "maps", "none.lua")
+        self.refuse(2, "--set", "stability", "--only", "extremes", "--set", "a=b")
+        self.refuse(2, "--duration", "stability", "--only", "extremes", "--duration", "1")
+        self.refuse(3, "nowhere", "stability", "--only", "ledgers", "--scenarios", "nowhere")
 
     def test_wrong_usage(self):
         self.assertEqual(self.run_program("stability", "--only", "weather").returncode, 2)

@@ -175,6 +175,8 @@ class Tradeoff(ProgramTest):
         refuse(2, "unit", "--vary", "hybrid=off,exact", "--error", "1mm", "--by", "force")
         refuse(2, "no time", "--vary", "hybrid=off,exact", "--budget", "1mm")
         refuse(3, ["the truth fails", "as it was told", "--truth"], "--vary", "hybrid=off,exact", "--truth", "misbehave=error")
+        refuse(1, ["no setting has figures", "as it was told"], "--vary", "misbehave=error", "--vary", "voxelsize=10mm,20mm",
+               "--truth", "misbehave=no")
         self.refuse(3, "nowhere.lua", "tradeoff", "nowhere.lua", "--vary", "a=1,2")
 
 
@@ -225,6 +227,14 @@ class Auto(ProgramTest):
         self.run_file("a.h5")
         os.remove(self.path("tradeoff.json"))
         self.assertIn("equal", self.succeed("replay", self.path("a.h5"), "--verify").stdout)
+
+    def test_a_batch_s_index_has_what_was_chosen(self):
+        self.make_table()
+        parameters, _, summary = self.run_file("a.h5")
+        self.succeed("batch", self.scenario, "--vary", f"depth={parameters['depth']}", "-o", self.path("b"))
+        with open(os.path.join(self.path("b"), "index.csv"), newline="") as f:
+            row, = csv.DictReader(f)
+        self.assertEqual((row["hybrid"], float(row["voxelsize"])), (parameters["hybrid"], parameters["voxelsize"]))
 
     @unittest.skipIf(SANITIZED, "test_the_choice_is_a_table_s_and_stands_in_the_run runs the same code")
     def test_what_the_command_line_says_is_kept(self):
