@@ -46,8 +46,10 @@ bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, con
 }
 
 /// True if the foot of a place that is now beyond the borders will be within them after the step without contact: so a
-/// wall that comes to a cone's tip from the side is met before it is inside.
-bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p) {
+/// wall that comes to a cone's tip from the side is met before it is inside. What is behind the face's surface already
+/// comes to it through another face.
+bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p, double distance) {
+  if (-distance > pair.motion.overlap + pair.motion.thresholds.touching) return false;
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
   const Vector3d way = pair.moved(p, pair.motion.free_twist);
   const double reach = pair.base.faces[face].trim->reach_outside();
@@ -55,6 +57,27 @@ bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p
   const Vector3d after = p + way;
   const SurfaceAt there = surface.at(after);
   return is_on_face(pair.base, face, after - there.distance * there.normal);
+}
+
+/// True if a place behind a face is not inside of the body: on the straight way to its foot it comes in through another
+/// face. So a place above a thin plate is not a deep place below it.
+bool is_beyond_wall(const BodyPair& pair, std::uint32_t face, const Vector3d& p, const Vector3d& foot) {
+  for (std::uint32_t other = 0; other < pair.base.faces.size(); ++other) {
+    const ExactFace& wall = pair.base.faces[other];
+    if (other == face || !wall.surface) continue;
+    const double before = wall.surface->at(p).distance;
+    if (!(before > 0)) continue;
+    if (!(wall.surface->at(foot).distance < 0)) continue;
+    Vector3d outside = p, inside = foot;  // where the way comes in, to a thousandth of it
+    for (int i = 0; i < 10; ++i) {
+      const Vector3d middle = 0.5 * (outside + inside);
+      (wall.surface->at(middle).distance > 0 ? outside : inside) = middle;
+    }
+    const SurfaceAt there = wall.surface->at(inside);
+    if (wall.trim->find(*wall.surface, inside - there.distance * there.normal).where != Trim::Where::outside)
+      return true;
+  }
+  return false;
 }
 
 /// How far a ball's contact point lies from the face that the ball belongs to [m]: the least within the step, for a
@@ -150,7 +173,9 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
   }
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);
-  if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c.p);
+  if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c.p, c.at.distance);
+  constexpr double kThinnest = 1e-5;  // m: contacts are hardly ever so deep, walls never so thin
+  if (c.at.distance < -kThinnest && is_beyond_wall(pair, face, c.p, foot)) return false;
   // Beside the border the foot is off the face: only an edge that it lies beyond can say that the face owns it.
   bool is_limited = answer.where != Trim::Where::beside;
   for (const std::uint32_t e : answer.edges) {
