@@ -83,6 +83,14 @@ inline std::vector<Kind> body_kinds() {
                            moved(torus(0.006, 0.002), {0, 0, -0.008})}};
 }
 
+/// Thinner than a voxel, or hardly thicker.
+inline std::vector<Kind> thin_kinds() {
+  return {{"coin", cylinder(0.015, 0.00075)}, {"disc2", cylinder(0.015, 0.00225)},
+          {"plate", box(0.03, 0.02, 0.0008)}, {"washer", make(Solid::Kind::tube, {0.014, 0.006, 0.001})},
+          {"tile", prism(5, 0.012, 0.001)},   {"needle", cylinder(0.0006, 0.03)},
+          {"blade", box(0.03, 0.003, 0.0005)}};
+}
+
 /// Their upper faces, or highest points, at z = 0.
 inline std::vector<Kind> seat_kinds() {
   const double eighth = pinned::kFullTurn / 8, quarter = 2 * eighth;
