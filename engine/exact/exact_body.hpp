@@ -70,10 +70,18 @@ struct ExactEdge {
   /// all edges at that corner are convex, so the material is inside of all of their faces; or the face's own corner
   /// there is convex (below 180 degrees), so whoever is across the edge is off the face.
   std::array<std::array<bool, 2>, 2> limits_beyond_end = {};
+  /// [face][end] At a corner of the face that is sharper than 270 degrees, as that of a triangular hole, the strip
+  /// beside this edge goes on behind the edge that it meets there. Then the direction that leaves the face across that
+  /// edge; else zero.
+  std::array<std::array<Vector3d, 2>, 2> sharp_corner = {
+      {{Vector3d::Zero(), Vector3d::Zero()}, {Vector3d::Zero(), Vector3d::Zero()}}};
+  std::array<bool, 2> has_sharp_corner = {};                            ///< [face]
+  std::array<Vector3d, 2> ends = {Vector3d::Zero(), Vector3d::Zero()};  ///< m, where it begins and ends, if it does
 
   /// True if the edge limits `face` near the point p: p lies within the extent, or limits_beyond_end holds. At a corner
   /// with a concave edge the material is inside of either of two faces; a point that is inside of the face across
-  /// (distance < 0) counts as within up to `beyond_end` beyond the end.
+  /// (distance < 0) counts as within up to `beyond_end` beyond the end. Behind the other edge of a sharp corner it does
+  /// not limit.
   /// @param distance  of p from the face across the edge [m]
   [[nodiscard]] bool limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const;
 

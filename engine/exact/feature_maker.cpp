@@ -266,12 +266,31 @@ void limit_beyond_convex_corners(ExactBody& body, std::span<const EdgeEnd* const
   }
 }
 
+/// Two convex edges of a face that meet at less than 90 degrees on the side where the face is not.
+void tell_sharp_corners(ExactBody& body, std::span<const EdgeEnd* const> here) {
+  for (const EdgeEnd* a : here) {
+    ExactEdge& edge = body.edges[a->edge];
+    for (const EdgeEnd* b : here) {
+      const ExactEdge& next = body.edges[b->edge];
+      if (a == b || edge.convexity != Convexity::convex || next.convexity != Convexity::convex) continue;
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t j = 0; j < 2; ++j) {
+          if (edge.faces[i] != next.faces[j] || !(a->into.dot(b->into) > 0)) continue;
+          if (!(a->into.dot(b->outward[j]) > 0 && b->into.dot(a->outward[i]) > 0)) continue;
+          edge.sharp_corner[i][a->which] = b->outward[j];
+          edge.has_sharp_corner[i] = true;
+        }
+    }
+  }
+}
+
 }  // namespace
 
 void add_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
   const double same = body.options.same_corner;
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EdgeEnd& a, const EdgeEnd& b) { return a.point.x() < b.point.x(); });
+  for (const EdgeEnd& end : ends) body.edges[end.edge].ends[end.which] = end.point;
   std::vector<bool> used(ends.size(), false);
   std::vector<const EdgeEnd*> here;
   for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -285,6 +304,7 @@ void add_corners(ExactBody& body, std::vector<EdgeEnd> ends) {
     const auto is_convex = [&](const EdgeEnd* end) { return body.edges[end->edge].convexity == Convexity::convex; };
     if (here.size() < 3) continue;
     limit_beyond_convex_corners(body, here);
+    tell_sharp_corners(body, here);
     if (!std::all_of(here.begin(), here.end(), is_convex)) continue;
     Sample sample;
     for (const EdgeEnd* end : here) {

@@ -226,8 +226,21 @@ class Search {
     }
   }
 
-  /// m, to A's surface at least, from a point of the divider `own`: both sides of it are inside, or both outside.
-  double away_from_surface(std::uint32_t own) {
+  /// m, to A's surface at least, from a point of the divider `own`: both sides of it are inside, or both outside. Where
+  /// the point is on a divider of both senses, too, as on a flush countersink's rim, on either side of that.
+  double away_from_surface(std::uint32_t own, std::size_t from = 0) {
+    const std::vector<std::uint32_t>& both = a_.of_both_senses();
+    for (std::size_t k = from; k < both.size(); ++k) {
+      const double kept = values_a_[both[k]];
+      if (both[k] == own || std::abs(kept) > kOnSurface) continue;
+      double least = kInfinity;
+      for (const double side : {-kInfinity, kInfinity}) {
+        values_a_[both[k]] = side;
+        least = std::min(least, away_from_surface(own, k + 1));
+      }
+      values_a_[both[k]] = kept;
+      return least;
+    }
     const double below = values_a_.tree_with(own, -kInfinity), above = values_a_.tree_with(own, kInfinity);
     return std::max(std::min(below, above), -std::max(below, above));
   }

@@ -168,6 +168,7 @@ class Resumption(Batches):
         self.batch_json("b", *args)
         self.assertEqual(self.index("b"), self.index("whole"))
 
+    @unittest.skipIf(SANITIZED, "the sanitizers need file handles of their own")
     def test_want_of_the_system_is_no_answer(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_NOFILE, (12, 12))

@@ -43,6 +43,7 @@ inline SolidPtr operator-(const SolidPtr& a, const SolidPtr& b) {
 inline SolidPtr operator*(const SolidPtr& a, const SolidPtr& b) {
   return make(Solid::Kind::intersection, {}, {a, b});
 }
+inline const Vector3d kHere = Vector3d::Zero();  // {} would be any numbers
 inline SolidPtr moved(const SolidPtr& a, const Vector3d& by, const Vector3d& turn = Vector3d::Zero()) {
   return make(Solid::Kind::placed, {}, {a}, {by, rotation_from_vector(turn)});
 }
@@ -52,7 +53,7 @@ inline SolidPtr prism(int n, double inner, double height) {
   SolidPtr all;
   for (int i = 0; i < n; ++i) {
     const SolidPtr half =
-        moved(moved(box(0.08, 0.08, height), {inner - 0.04, 0, 0}), {}, {0, 0, pinned::kFullTurn * i / n});
+        moved(moved(box(0.08, 0.08, height), {inner - 0.04, 0, 0}), kHere, {0, 0, pinned::kFullTurn * i / n});
     all = all ? all * half : half;
   }
   return all;
@@ -102,7 +103,7 @@ inline std::vector<Kind> seat_kinds() {
           {"pit", block - moved(box(0.04, 0.04, 0.03), {0, 0, 0.005})},
           {"bowl", block - moved(ball(0.03), {0, 0, 0.01})},
           {"funnel", block - moved(cone(0.006, 0.036, 0.03), {0, 0, -0.015})},
-          {"groove", block - moved(box(0.03, 0.2, 0.03), {}, {0, eighth, 0})},
+          {"groove", block - moved(box(0.03, 0.2, 0.03), kHere, {0, eighth, 0})},
           {"slot", block - moved(box(0.022, 0.2, 0.03), {0, 0, 0.005})},
           {"trough", block - moved(cylinder(0.02, 0.2), {0, 0, 0.005}, {quarter, 0, 0})},
           {"post", low + moved(cylinder(0.006, 0.03), {0, 0, -0.015})},
@@ -113,6 +114,15 @@ inline std::vector<Kind> seat_kinds() {
           {"ring_groove", block - torus(0.02, 0.006)},
           {"corner",
            low + moved(box(0.02, 0.12, 0.02), {-0.02, 0, -0.01}) + moved(box(0.12, 0.02, 0.02), {0, -0.02, -0.01})}};
+}
+
+/// Holes with corners of 60 and 40 degrees.
+inline std::vector<Kind> sharp_seats() {
+  const SolidPtr block = moved(box(0.12, 0.12, 0.04), {0, 0, -0.02});
+  const SolidPtr slit = box(0.08, 0.014, 0.1);
+  return {{"triangle", block - prism(3, 0.006, 0.1)},
+          {"small_tri", block - prism(3, 0.003, 0.1)},
+          {"rhombus", block - slit * moved(slit, kHere, {0, 0, pinned::kFullTurn / 9})}};
 }
 
 /// A kind with its part, loaded once.

@@ -204,9 +204,10 @@ Seeds seeds(std::uint64_t usual, std::uint64_t most) {
 }
 
 /// Drops each of the seeds, and those that were wrong once; prints and judges them.
-void judge_drops(const std::vector<drops::Kind>& kinds, Seeds asked, std::initializer_list<std::uint64_t> wrong_once) {
-  const std::vector<drops::Loaded> bodies = drops::loaded(kinds);
-  const std::vector<drops::Loaded> seats = drops::loaded(drops::seat_kinds());
+void judge_drops(const std::vector<drops::Kind>& body_kinds, const std::vector<drops::Kind>& seat_kinds, Seeds asked,
+                 std::initializer_list<std::uint64_t> wrong_once) {
+  const std::vector<drops::Loaded> bodies = drops::loaded(body_kinds);
+  const std::vector<drops::Loaded> seats = drops::loaded(seat_kinds);
   std::vector<Outcome> outcomes;
   const auto drop = [&](std::uint64_t seed) {
     outcomes.push_back(
@@ -237,13 +238,19 @@ void judge_drops(const std::vector<drops::Kind>& kinds, Seeds asked, std::initia
 
 // Rings that slide fast along an edge or a cone of nearly their own radius were 61 and 73 um deep once.
 TEST(RandomDrops, AreRecordedAsDeepAsTheyAre) {
-  judge_drops(drops::body_kinds(), seeds(200, 2000), {894, 1518});
+  judge_drops(drops::body_kinds(), drops::seat_kinds(), seeds(200, 2000), {894, 1518});
 }
 
 // What lies beyond a thin wall, or beside a border, was taken for a place millimetres deep: a coin was thrown at 70
 // m/s.
 TEST(RandomDrops, OfThinBodiesAreRecordedAsDeepAsTheyAre) {
-  judge_drops(drops::thin_kinds(), seeds(112, 1120), {});
+  judge_drops(drops::thin_kinds(), drops::seat_kinds(), seeds(112, 1120), {});
+}
+
+// Beside a corner of less than 90 degrees a hole's mouth was taken for the other side of the corner: what lay there
+// sank by 0.8 mm. Of 128 one is beyond the goal: seed 36, a cone in the rhombus, whose energy rises by 1.06 %.
+TEST(RandomDrops, OnSharpHolesAreRecordedAsDeepAsTheyAre) {
+  judge_drops(drops::body_kinds(), drops::sharp_seats(), seeds(32, 640), {});
 }
 
 // Upright, on a floor, without a velocity: what rests has nothing from which it could gain energy.

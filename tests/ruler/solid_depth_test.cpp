@@ -127,6 +127,20 @@ TEST(SolidDepth, KnowsThatTouchingPrimitivesAreOne) {
   EXPECT_NEAR(ruler::depth_of({0.008, 0, 1e-9}, post), 0.002, test::tolerance(1e-15));
 }
 
+// The bore's rim was cut away by a countersink that is flush with the block: it was taken for surface, 1 mm deep in a
+// box that lies in the opening.
+TEST(SolidDepth, KnowsThatARimThatWasCutAwayIsNone) {
+  const std::string bored = "difference(placed(0,0,-0.03;0,0,0,1;box(0.2,0.2,0.06)),cylinder(0.02,0.2))";
+  const std::string sunk = "difference(" + bored + ",placed(0,0,-0.01;0,0,0,1;cone(0.02,0.04,0.02)))";
+  const std::string higher = "difference(" + bored + ",placed(0,0,-0.0095;0,0,0,1;cone(0.02,0.041,0.021)))";
+  Pose X;
+  X.rotation = rotation_from_vector(0.3 * Vector3d(1, 0.3, 0.2).normalized());
+  for (const std::string& seat : {sunk, higher}) {
+    const Overlap found = of("box(0.03,0.03,0.03)", X, seat, {}, {});
+    EXPECT_EQ(found.depth, 0) << seat;
+  }
+}
+
 // Rigid motions change the roundings alone; what is found may differ by what the search may miss.
 TEST(SolidDepth, IsTheSameElsewhereAndTheOtherWayRound) {
   const std::vector<std::string> solids = {
