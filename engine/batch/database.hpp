@@ -41,10 +41,9 @@ class Statement {
 
 class Database {
  public:
-  /// Opens or makes the file; WAL, so that what one transaction wrote outlives a kill -9. Error(io): it cannot be
-  /// opened or is damaged (Error(input)).
   enum class Access { write, read };
-  /// To write it is made if it is not there; to read it neither it nor its folder has to be writable.
+  /// Opens the file. To write: makes it if it is not there; WAL, so that what one transaction wrote outlives a kill -9.
+  /// To read: neither it nor its folder has to be writable. Error(io): it cannot be opened or is damaged (Error(input)).
   explicit Database(const std::string& path, Access access = Access::write);
   ~Database();
   Database(const Database&) = delete;
