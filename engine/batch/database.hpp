@@ -43,7 +43,8 @@ class Database {
  public:
   enum class Access { write, read };
   /// Opens the file. To write: makes it if it is not there; WAL, so that what one transaction wrote outlives a kill -9.
-  /// To read: neither it nor its folder has to be writable. Error(io): it cannot be opened or is damaged (Error(input)).
+  /// To read: neither it nor its folder has to be writable. Error(io): it cannot be opened; Error(input): it is
+  /// damaged.
   explicit Database(const std::string& path, Access access = Access::write);
   ~Database();
   Database(const Database&) = delete;

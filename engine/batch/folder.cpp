@@ -104,7 +104,7 @@ std::string first_difference(const ordered_json& there, const ordered_json& here
   return difference("", a, b);
 }
 
-ordered_json read_json(const std::string& folder) {
+ordered_json read_any_manifest(const std::string& folder) {
   const std::string file = folder + "/" + kManifest;
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: holds no batch ({} is not there); name a folder of verisim batch", folder, kManifest);
@@ -119,7 +119,7 @@ bool is_half_merged(const ordered_json& manifest) {
 }
 
 ordered_json read_manifest(const std::string& folder) {
-  ordered_json manifest = read_json(folder);
+  ordered_json manifest = read_any_manifest(folder);
   if (is_half_merged(manifest))
     fail(ErrorKind::input, "{}: 'batch merge' did not end here; call it again with the same folders", folder);
   return manifest;
@@ -131,7 +131,7 @@ Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move
   if (!identity_of(file) && !identity_of(path_ + "/" + kLock) && holds_other_things(path_))
     fail(ErrorKind::io, "{}: holds no batch, but other things; name an empty folder or a new one with -o", path_);
   lock_ = lock_of(path_);
-  const bool merges_anew = is_half_merged(manifest) && (!identity_of(file) || is_half_merged(read_json(path_)));
+  const bool merges_anew = is_half_merged(manifest) && (!identity_of(file) || is_half_merged(read_any_manifest(path_)));
   if (merges_anew) clear_half_merged(path_);
   if (identity_of(file) && !merges_anew) {
     const std::string found = first_difference(read_manifest(path_), manifest, {"machine", "scenario"});

@@ -37,7 +37,7 @@ class Folder {
 [[nodiscard]] std::string index_of(const std::string& folder);
 
 /// batch.json of a folder. Error(input): there is none, or it is something else.
-[[nodiscard]] nlohmann::ordered_json read_json(const std::string& folder);
+[[nodiscard]] nlohmann::ordered_json read_any_manifest(const std::string& folder);
 /// Likewise, and Error(input) if what makes the folder is a merge that has not ended.
 [[nodiscard]] nlohmann::ordered_json read_manifest(const std::string& folder);
 

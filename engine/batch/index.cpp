@@ -153,6 +153,12 @@ void Index::make_tables(const std::string& version) {
   });
 }
 
+void Index::expect_input(const std::string& name, const std::string& sha256) {
+  Answer expected;
+  expected.inputs[name] = sha256;
+  database_->transaction([&] { add_inputs(expected); });
+}
+
 std::vector<std::string> Index::inputs() {
   std::vector<std::string> names;
   Statement statement = database_->prepare("SELECT name FROM input ORDER BY name");

@@ -44,6 +44,8 @@ class Index {
   /// Opens one that is there already, to be read. Error(input): there is none.
   [[nodiscard]] static Index open(const std::string& path, const std::string& version);
 
+  /// All runs read this content of a file: those of another one are refused.
+  void expect_input(const std::string& name, const std::string& sha256);
   /// Names of the files that runs read.
   [[nodiscard]] std::vector<std::string> inputs();
   /// The numbers of the runs that it holds, sorted.

@@ -61,7 +61,7 @@ void merge(const std::string& out, const std::vector<std::string>& shards, const
   }
   check_runs(shards, manifest.at("runs").get<std::uint64_t>(), version);
   manifest["shard"] = nullptr;
-  if (identity_of(out + "/batch.json") && !is_half_merged(read_json(out)))
+  if (identity_of(out + "/batch.json") && !is_half_merged(read_any_manifest(out)))
     fail(ErrorKind::input, "{}: holds a batch already; name a new folder to merge into", out);
   ordered_json unfinished = manifest;
   unfinished[kMerging] = true;

@@ -130,6 +130,7 @@ Batch::Batch(const BatchOptions& o) : o_(o) {
   limits_.memory_bytes = o.memory_limit_mb > 0 ? o.memory_limit_mb * kMebibyte : batch::physical_memory() / 10 * 8;
   folder_ = std::make_unique<batch::Folder>(run_options_.folder, manifest());
   index_ = std::make_unique<batch::Index>(batch::index_of(folder_->path()), layout_, program_version());
+  index_->expect_input(fs::path(scenario.path).filename().string(), scenario_sha256_);
 }
 
 Design Batch::read_design() {
@@ -249,13 +250,6 @@ std::string Batch::name_of(const batch::Point& point) const {
 /// Error(input) if the run is none of this batch: a file was changed, or is gone, since the batch began.
 void Batch::add_row(const batch::Point& point, const Answer& answer) {
   const fs::path folder = fs::path(run_options_.scenario.path).parent_path();
-  const std::string scenario = fs::path(run_options_.scenario.path).filename().string();
-  const auto read = answer.inputs.find(scenario);
-  if (read != answer.inputs.end() && read->second != scenario_sha256_)
-    fail(ErrorKind::input,
-         "{}: was changed while the batch ran: its runs would not be of one scenario; put the former content back, or "
-         "name another folder with -o",
-         shown(scenario));
   if (answer.status != "done" && answer.answered)
     for (const std::string& name : index_->inputs())
       if (!identity_of((folder / name).string()) && !identity_of(name))

@@ -74,8 +74,7 @@ bool is_beyond_wall(const BodyPair& pair, std::uint32_t face, const Vector3d& p,
       (wall.surface->at(middle).distance > 0 ? outside : inside) = middle;
     }
     const SurfaceAt there = wall.surface->at(inside);
-    if (wall.trim->find(*wall.surface, inside - there.distance * there.normal).where != Trim::Where::outside)
-      return true;
+    if (is_on_face(pair.base, other, inside - there.distance * there.normal)) return true;
   }
   return false;
 }
