@@ -27,10 +27,13 @@ void check_plain(const std::string& name, const struct stat& info) {
 }
 
 /// What is short or broken may be there again when the same is asked for once more: no fault of the input.
+[[noreturn]] void refuse_for_now(const std::string& name, int cause) {
+  fail(ErrorKind::io, "{}: cannot be read now ({}); give the system what it lacks and try again", name,
+       std::generic_category().message(cause));
+}
+
 [[noreturn]] void refuse_reading(const std::string& name, int cause) {
-  if (cause == EMFILE || cause == ENFILE || cause == ENOMEM || cause == EIO)
-    fail(ErrorKind::io, "{}: cannot be read now ({}); give the system what it lacks and try again", name,
-         std::generic_category().message(cause));
+  if (cause == EMFILE || cause == ENFILE || cause == ENOMEM) refuse_for_now(name, cause);
   fail(ErrorKind::input, "{}: cannot be read ({}); check its permissions", name,
        std::generic_category().message(cause));
 }
@@ -79,6 +82,8 @@ std::string UserFile::read(std::size_t size_max) const {
     content.resize(std::min(size_max, std::max<std::size_t>(size_, done) + kStep));
     const ssize_t count = ::pread(descriptor_, content.data() + done, content.size() - done, static_cast<off_t>(done));
     if (count < 0 && errno == EINTR) continue;
+    // A disk that fails gives EIO; so do files of the system that have no size, for they are not for reading.
+    if (count < 0 && errno == EIO && size_ > 0) refuse_for_now(name_, errno);
     if (count < 0) refuse_reading(name_, errno);
     if (count == 0) break;
     done += static_cast<std::size_t>(count);
