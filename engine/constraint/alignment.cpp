@@ -153,7 +153,7 @@ double normalized_misalignment(const Constraint& c, const Misalignment& m, doubl
   switch (c.pairing) {
     case Pairing::plane_plane:
     case Pairing::axis_plane:
-      return tangent;
+      return tangent * tangent;
     case Pairing::point_plane:
       return 0;
     case Pairing::axis_axis:

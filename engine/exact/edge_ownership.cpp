@@ -7,6 +7,8 @@
 namespace verisim::exact {
 namespace {
 
+constexpr double kHardly = 0.01;  ///< of the depth below a face: the depth below another that says nothing of the first
+
 /// True if a point lies beyond a smooth edge, seen from the face.
 bool is_beyond(const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
   const ExactEdge::Mark* nearest = nullptr;
@@ -59,23 +61,31 @@ bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p
   return is_on_face(pair.base, face, after - there.distance * there.normal);
 }
 
-/// True if a place behind a face is not inside of the body: on the straight way to its foot it comes in through another
-/// face. So a place above a thin plate is not a deep place below it.
-bool is_beyond_wall(const BodyPair& pair, std::uint32_t face, const Vector3d& p, const Vector3d& foot) {
-  for (std::uint32_t other = 0; other < pair.base.faces.size(); ++other) {
-    const ExactFace& wall = pair.base.faces[other];
-    if (other == face || !wall.surface) continue;
-    const double before = wall.surface->at(p).distance;
-    if (!(before > 0)) continue;
-    if (!(wall.surface->at(foot).distance < 0)) continue;
-    Vector3d outside = p, inside = foot;  // where the way comes in, to a thousandth of it
-    for (int i = 0; i < 10; ++i) {
-      const Vector3d middle = 0.5 * (outside + inside);
-      (wall.surface->at(middle).distance > 0 ? outside : inside) = middle;
-    }
-    const SurfaceAt there = wall.surface->at(inside);
-    if (is_on_face(pair.base, other, inside - there.distance * there.normal)) return true;
+/// True if a place behind a face came in through another one, the wall: on the straight way to its foot it enters
+/// there, or it has hardly entered there and the wall can push it out. Its depth below the face is then of no meaning.
+/// So a place above a thin plate, or just within it, is not a deep place of its far side.
+bool comes_through(const BodyPair& pair, const Candidate& c, std::uint32_t other, const Vector3d& foot) {
+  const AnalyticSurface& wall = *pair.base.faces[other].surface;
+  const SurfaceAt before = wall.at(c.p);
+  if (!(before.distance > 0)) {
+    const double entered = pair.motion.overlap + pair.motion.thresholds.touching;
+    return before.distance > -entered && before.distance > kHardly * c.at.distance &&
+           pair.normal_cone_weight(c.sample, before.normal) >= 1 &&
+           is_on_face(pair.base, other, c.p - before.distance * before.normal);
   }
+  if (!(wall.at(foot).distance < 0)) return false;
+  Vector3d outside = c.p, inside = foot;  // where the way comes in, to a thousandth of it
+  for (int i = 0; i < 10; ++i) {
+    const Vector3d middle = 0.5 * (outside + inside);
+    (wall.at(middle).distance > 0 ? outside : inside) = middle;
+  }
+  const SurfaceAt there = wall.at(inside);
+  return is_on_face(pair.base, other, inside - there.distance * there.normal);
+}
+
+bool comes_through_another(const BodyPair& pair, const Candidate& c, std::uint32_t face, const Vector3d& foot) {
+  for (std::uint32_t other = 0; other < pair.base.faces.size(); ++other)
+    if (other != face && pair.base.faces[other].surface && comes_through(pair, c, other, foot)) return true;
   return false;
 }
 
@@ -174,7 +184,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);
   if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c.p, c.at.distance);
   constexpr double kThinnest = 1e-5;  // m: contacts are hardly ever so deep, walls never so thin
-  if (c.at.distance < -kThinnest && is_beyond_wall(pair, face, c.p, foot)) return false;
+  if (c.at.distance < -kThinnest && comes_through_another(pair, c, face, foot)) return false;
   // Beside the border the foot is off the face: only an edge that it lies beyond can say that the face owns it.
   bool is_limited = answer.where != Trim::Where::beside;
   for (const std::uint32_t e : answer.edges) {

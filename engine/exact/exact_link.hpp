@@ -13,8 +13,8 @@
 //                   A face owns only what it can push: where its normal, and that of edge against edge, is outside of
 //                   the mover's normal cone, the place stays with the face across. So a rim that lies on an edge, or
 //                   comes down on it, is held by the one face that can hold it.
-//   Thin walls      A place behind a face, and not inside of the body, is no place of that face: there is another one
-//                   between. What is behind a face and beside its border comes to it through another one.
+//   Thin walls      A place behind a face, and not inside of the body or hardly so, is no place of that face: it comes
+//                   through another one. What is behind a face and beside its border comes to it through another one.
 //   Sharp corners   Beside a corner of a face that is sharper than 270 degrees (a triangular hole) the strip along one
 //                   edge reaches behind the other one; there it does not limit (ExactEdge::sharp_corner).
 //   Edge and edge   The mover's curves are tested against the convex edges, too. Where a segment crosses from one face

@@ -270,7 +270,7 @@ class AtTheRim {
 // each alpha, and its slope there, f with one normal kept less f without, is no longer than f. So |df'| / |f| is at
 // most the sum of all |d alpha|, plus the angle by which a kept normal turns. With the factors of alignment.hpp, each
 // between 0 and 1, a product's slope is at most the sum of the slopes of its factors:
-//   planar  (1 - tan theta) clear_of_hole      beside: 1/s, while the axes are 145 to 149.5 mm apart
+//   planar  (1 - tan^2 theta) clear_of_hole     beside: 1/s, while the axes are 145 to 149.5 mm apart
 //   round   (1 - x/s) engagement               x/s: 1/s from the offset, within 9.5 mm; tan theta / s from the depth
 //                                              engagement: 1/s from the depth
 //           or, if larger, 1 - x / (s/10)      10/s from the offset; reached only before the hole

@@ -11,15 +11,14 @@ import numpy as np
 from scene_test import HERE, LONG, SceneTest
 
 INTEGRATORS = ("semi-implicit", "implicit")
-MASS = {"box": 0.096, "sphere": 0.0335103, "spherecone": 0.113097, "bowl": 0.0335103, "cylside": 0.100531,
-        "vgroove": 0.100531, "bowlcyl": 0.0753982}  # kg: 1000 kg/m^3 of the solids' volumes
+MASS = {"box": 0.096, "disc": 0.0100531, "tube": 0.0120637, "frustum": 0.0146608, "sphere": 0.0335103,
+        "spherecone": 0.113097, "bowl": 0.0335103, "cylside": 0.100531, "vgroove": 0.100531, "bowlcyl": 0.0753982}  # kg: 1000 kg/m^3 of the solids' volumes
 HAND_AND_COUPLING = 300 * 400 / (300 + 400)  # N/m in series
 
 # Wanted: 0.1 mm and 0.01. There is no friction: what a body was given while its voxels took up its weight, it keeps.
-# Under the semi-implicit integrator, whose contacts are softer, these slide on, by so many mm after the first second;
-# and one cylinder turns on in its groove, whose points come and go: standard deviation of N over W.
-SLIDES = {("box", "restore", "semi-implicit", 0.004): 1, ("cylside", "restore", "semi-implicit", 0.002): 0.8,
-          ("cylside", "restore", "semi-implicit", 0.004): 2.2, ("cylside", "off", "semi-implicit", 0.002): 0.9}
+# Under the semi-implicit integrator, whose contacts are softer, one slides on under `off`, by so many mm after the first
+# second; and one cylinder turns on in its groove, whose points come and go: standard deviation of N over W.
+SLIDES = {("cylside", "off", "semi-implicit", 0.002): 0.9}
 TURNS = {("vgroove", "off", "semi-implicit", 0.004): 0.04}
 
 
@@ -41,9 +40,9 @@ class RestTest(SceneTest):
                 self.assertLessEqual(pose[0, 2] - pose[-1, 2], voxelsize / 2)
 
     def test_nothing_pushes_sideways_what_lies_on_a_larger_plate(self):
-        # By voxels there is no friction: while they take up a body's weight it may tilt by 0.01 and get a speed of 1 or
-        # 2 mm/s, which `restore` lets it keep. But then nothing pushes it: of 20 draws the speed changed by 2e-5 m/s at
-        # most in 10 s. (With a normal midway between the two planes 8 of 20 went aside by 0.1 m and more.)
+        # By voxels there is no friction: while they take up a body's weight it may tilt by 0.01, and what that gives it
+        # stays. Of 40 draws the fastest under `restore` had 0.15 mm/s after 20 s, half of them less than 1 nm/s; under
+        # `off` none had more. (With a normal midway between the two planes 8 of 20 went aside by 0.1 m and more.)
         for seed in range(40 if LONG else 4):
             draw = np.random.default_rng(seed)
             settings = {axis: draw.uniform(0.03, 0.06) for axis in "xyz"}
@@ -55,8 +54,7 @@ class RestTest(SceneTest):
                 with self.subTest(hybrid=hybrid, seed=seed, **settings):
                     pose, twist, _ = self.run_scene("lying.lua", "box", hybrid=hybrid, **settings)
                     speed = np.linalg.norm(twist[:, :2], axis=1)
-                    self.assertLessEqual(speed[10000:].max(), 1e-9 if hybrid == "exact" else 3e-3)
-                    self.assertLessEqual(np.linalg.norm(twist[-1, :2] - twist[10000, :2]), 3e-5)
+                    self.assertLessEqual(speed[10000:].max(), {"off": 1e-8, "restore": 3e-4, "exact": 1e-9}[hybrid])
                     self.assertGreater(pose[-1, 2], pose[0, 2] - settings["voxelsize"])
 
     def test_what_is_pressed_does_not_buzz(self):

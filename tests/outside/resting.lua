@@ -25,6 +25,18 @@ local scenes = {
     ground(Solid.box{0.2, 0.2, 0.02}, -0.01)
     body(Solid.cylinder{radius = 0.02, height = 0.08}:rotate(lying), 0.0013, 0.0007, 0.02)
   end,
+  disc = function()
+    ground(Solid.box{0.2, 0.2, 0.02}, -0.01)
+    body(Solid.cylinder{radius = 0.02, height = 0.008}, 0.0007, 0.0003, 0.004)
+  end,
+  tube = function()
+    ground(Solid.box{0.2, 0.2, 0.02}, -0.01)
+    body(Solid.tube{outer = 0.016, inner = 0.008, height = 0.02}, 0.0011, -0.0004, 0.01)
+  end,
+  frustum = function()
+    ground(Solid.box{0.2, 0.2, 0.02}, -0.01)
+    body(Solid.cone{radius1 = 0.02, radius2 = 0.01, height = 0.02}, 0.0009, 0.0006, 0.01)
+  end,
   spherecone = function()
     ground(Solid.box{0.14, 0.14, 0.04} - Solid.cone{radius1 = 0.01, radius2 = 0.05, height = 0.04}, -0.02)
     body(Solid.sphere{radius = 0.03}, 0.001, 0.0005, 0.03 * math.sqrt(2) - 0.05)
