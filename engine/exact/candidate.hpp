@@ -28,9 +28,10 @@ struct Candidate {
   std::uint32_t sample = 0;  ///< the sample on whose segment the place lies
   Place place{};             ///< parameter on the feature's curve
   Vector3d p;                ///< m, the place on the curve
-  SurfaceAt at{};            ///< distance and normal of the face at p
+  SurfaceAt at{};            ///< distance and normal of the face at p; of two crossing edges, of the farther one
   double gap = 0;            ///< m, of the ball's boundary from the face
   double gap_ahead = 0;      ///< m, at the end of the step without contact
+  bool comes_down = false;   ///< is the place the closest of its segment then, and not now?
   Vector3d normal;           ///< unit, of the contact; that of the face, or of two crossing edges
   double edge_fraction = 0;  ///< 0: the normal is a face's; 1: it lies midway between the two faces of an edge
   double weight = 1;         ///< in [0, 1], scales the stiffness; below 1 where the place is not the mover's boundary

@@ -59,11 +59,11 @@ inline Place closest_place(const CurveFromSurface& curve, double c, double s, do
       const double wanted = m.bend > 0 ? at.t - slope / m.bend : (slope > 0 ? low : high);
       double t = std::clamp(wanted, low, high);
       const bool is_at_end = t == -half || t == half;
-      if (i >= kNewtonMax && !is_at_end) t = 0.5 * (low + high);
       // The last step wins no distance, but a place: sqrt(kClosestPlaceGain / bend) beside it, on the part that turns,
       // a round body at rest would be pushed beside its axis and spun.
       const bool is_last = std::abs((t - at.t) * slope) < kClosestPlaceGain;
       if (is_last && !(m.bend * half * half > kClosestPlaceGain)) return;
+      if (i >= kNewtonMax && !is_at_end && !is_last) t = 0.5 * (low + high);
       at = place_at(curve.is_arc, c, s, t);
       if (is_last) return;
     }

@@ -6,12 +6,14 @@
 
 namespace verisim::exact {
 
-/// How far below its linear change the gap to a face's surface is at the end of the step [m, <= 0], if the mover goes
-/// on as it did in the last: surfaces and motion are curved, and along the feature the closest place moves.
+/// How far below its linear change the gap to a face's surface is at the end of the step [m, <= 0], if the bodies move as
+/// they are taken to (RelativeMotion::during): surfaces and motion are curved, and along the feature the closest place
+/// moves.
 [[nodiscard]] double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c,
                              const AnalyticSurface& surface);
 
-/// Likewise of two straight edges, whose distance is that of their lines. Of curved ones nobody knows: 0.
+/// Likewise of two edges: of straight ones the distance is that of their lines; else the crossing is looked for again
+/// where the step ends, and 0 if it has left the segment.
 [[nodiscard]] double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c,
                                       const ExactEdge& edge);
 

@@ -79,7 +79,7 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
       d_a *= 0.5;
     }
   }
-  c.at = at.a;
+  c.at = at.a.distance > at.b.distance ? at.a : at.b;
   // The blend of both normals that is perpendicular to the segment.
   const Vector3d tangent = placed.tangent(c.place);
   const double slope_a = at.a.normal.dot(tangent);

@@ -27,6 +27,7 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   };
   motion.free_twist = against(mover.twist, base.twist);
   motion.last_twist = against(mover.last_twist, base.last_twist);
+  motion.during = against(mover.during.value_or(mover.last_twist), base.during.value_or(base.last_twist));
   motion.R_WB = base.X_WB.rotation.toRotationMatrix();
   motion.p_WB = base.X_WB.position;
   motion.dt = dt;
@@ -39,8 +40,10 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
 }
 
 bool is_finite(const BodyMotion& body) {
+  const Twist during = body.during.value_or(body.last_twist);
   return std::isfinite(body.X_WB.position.sum() + body.X_WB.rotation.coeffs().sum() + body.twist.linear.sum() +
-                       body.twist.angular.sum() + body.last_twist.linear.sum() + body.last_twist.angular.sum());
+                       body.twist.angular.sum() + body.last_twist.linear.sum() + body.last_twist.angular.sum() +
+                       during.linear.sum() + during.angular.sum());
 }
 
 }  // namespace

@@ -37,18 +37,18 @@
 //                   to 40 degrees.
 // A row first appears with a gap of the margin or more and so without force, except for those of a group's ends.
 //
-// Accuracy. Rows are linear; motion and surfaces are curved. For contacts with faces a row knows what curves take from
-// its gap within the step, (v dt)^2 / (2 rho) for a place that slides with speed v along a wall of radius of curvature
-// rho, if the bodies move on as they did in the last step (ContactRow::curving). What is left is of third order, and
-// what the step itself changes: r |I^-1 (omega x L)| dt^2 / 2 for a place at r of a body whose spin changes its axis
-// (dynamics/free_rotation.hpp), and all of it after a blow. Rows of straight edges know it likewise; those of curved
-// ones stay linear: a place that slides or turns overlaps by half of its displacement times the change of the normal,
-// and gives it back in the next step. Where two rims of nearly the same radius cross, the crossing point is faster than
-// either body. For that there is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2
-// m/s overlapped by up to 7 um.
+// Accuracy. Rows are linear; motion and surfaces are curved. A row knows what curves take from its gap within the step,
+// (v dt)^2 / (2 rho) for a place that slides with speed v along a wall of radius of curvature rho, if the bodies move as
+// BodyMotion::during says (ContactRow::curving). Where a blow makes that wrong by more than some micrometres, the
+// contacts are found again for the motion that it gave (simulation/stages/exact_response.cpp). What is left is of third
+// order. Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there
+// is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7 um.
+// A straight edge may come down with another end than is nearest now, or on an edge that it does not cross now: both are
+// looked for as the free motion turns it.
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "engine/exact/contact_rows.hpp"
 #include "engine/exact/exact_body.hpp"
@@ -61,6 +61,7 @@ struct BodyMotion {
   Vector3d p_WC = Vector3d::Zero();  ///< centre of mass [m]
   Twist twist;                       ///< of the centre of mass, without contact
   Twist last_twist = {};             ///< likewise, at the end of the last step, contacts included
+  std::optional<Twist> during = {};  ///< likewise, that of the step, if known: what curves is of it; else of last_twist
 };
 
 /// Thresholds of the search. Heuristic: chosen so that rows fade in and out instead of jumping. exact_thresholds_test

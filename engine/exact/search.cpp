@@ -23,6 +23,9 @@ class Search {
   [[nodiscard]] const PlacedFeature& placed_feature(const SampleBlock& block);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
+  void cross_block(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature* now, std::uint32_t block,
+                   std::uint32_t edge);
+  [[nodiscard]] bool slopes_turn(const PlacedFeature& placed, const ExactEdge& edge) const;
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
   [[nodiscard]] bool is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
                                       double way) const;
@@ -33,6 +36,10 @@ class Search {
                                       std::uint32_t face, Candidate& c);
   [[nodiscard]] bool is_plane(std::uint32_t face) const {
     return pair_.base.faces[face].surface->kind() == SurfaceKind::plane;
+  }
+  /// A direction of the mover at the end of the step without contact.
+  [[nodiscard]] Vector3d turned(const Vector3d& direction) const {
+    return direction + pair_.motion.dt * pair_.motion.free_twist.angular.cross(direction);
   }
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
@@ -100,13 +107,14 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   // A place as deep as this gives no row. Along a straight segment the place that is closest to a plane is the deepest.
   const double deepest = is_straight ? -pair_.base.options.spacing - kSlack : -kOutOfReach;
   bool any = false;
-  const auto note = [&](std::uint32_t i, const Measure& m) {
-    const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - feature.radius_at(c[i]);
+  const auto note = [&](std::uint32_t i, const Measure& m, double nearest_ahead) {
+    const double radius = feature.radius_at(c[i]);
+    const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - radius;
     distances.distance[i] = m.distance;
     distances.change[i] = m.change;
     const bool may_be_row = nearest < motion.margin && nearest > deepest;
     gaps_now[i] = nearest;
-    gaps_ahead[i] = may_be_row ? nearest + m.change : kOutOfReach;
+    gaps_ahead[i] = may_be_row ? std::min(nearest + m.change, nearest_ahead - radius) : kOutOfReach;
     any = any || may_be_row;
   };
   if (is_straight) {
@@ -114,10 +122,13 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
     const double distance = n.dot(placed.origin - surface.point());
     const double change = n.dot(pair_.moved(placed.origin, motion.free_twist));
     const double more = motion.dt * n.dot(motion.free_twist.angular.cross(placed.x));
-    for (std::uint32_t i = 0; i < count; ++i)
-      note(i, {distance + c[i] * curve.x.z(), curve.x.z(), 0, change + c[i] * more});
+    const double rise = feature.half_width * std::abs(curve.x.z() + more - feature.radius_slope);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Measure m{distance + c[i] * curve.x.z(), curve.x.z(), 0, change + c[i] * more};
+      note(i, m, m.distance + m.change - rise);
+    }
   } else {
-    pair_.measure_all(curve, block, note);
+    pair_.measure_all(curve, block, [&](std::uint32_t i, const Measure& m) { note(i, m, kOutOfReach); });
   }
   cost_.samples += count;
   if (!any) return;
@@ -130,32 +141,59 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   }
 }
 
-/// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step
-/// without contact.
 void Search::cross_block(std::uint32_t r, std::uint32_t e) {
-  const RelativeMotion& motion = pair_.motion;
   const SampleBlock& block = pair_.mover.blocks[r];
   const Feature& feature = pair_.mover.features[block.feature];
   if (feature.own_face != kNoFace || feature.half_width == 0) return;
   const ExactEdge& edge = pair_.base.edges[e];
   const PlacedFeature& placed = placed_feature(block);
-  if (!may_cross_edge(pair_, placed, edge)) return;
+  if (may_cross_edge(pair_, placed, edge)) return cross_block(pair_, placed, nullptr, r, e);
+  if (!slopes_turn(placed, edge)) return;
+  // A straight edge that slopes the same way from both faces crosses none, but will do so after the step.
+  const RelativeMotion& motion = pair_.motion;
+  const PlacedFeature ahead{&feature, placed.origin + pair_.moved(placed.origin, motion.free_twist), turned(placed.x),
+                            placed.y};
+  RelativeMotion still = motion;
+  still.free_twist = still.last_twist = {};
+  const BodyPair pair_ahead{pair_.mover, pair_.base, still};
+  if (may_cross_edge(pair_ahead, ahead, edge)) cross_block(pair_ahead, ahead, &placed, r, e);
+}
+
+/// True if a straight feature leaves both faces of an edge of two planes in the same direction, but not after the step.
+bool Search::slopes_turn(const PlacedFeature& placed, const ExactEdge& edge) const {
+  const Vector3d& a = pair_.base.faces[edge.faces[0]].surface->axis();
+  const Vector3d& b = pair_.base.faces[edge.faces[1]].surface->axis();
+  const Vector3d after = turned(placed.x);
+  return a.dot(placed.x) * b.dot(placed.x) >= 0 && a.dot(after) * b.dot(after) < 0;
+}
+
+/// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step
+/// without contact.
+/// @param pair    with the motion from `placed` on
+/// @param placed  where the mover's curve is, or after the step
+/// @param now     where it is now, if the crossing is that after the step; else null
+void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature* now, std::uint32_t r,
+                         std::uint32_t e) {
+  const RelativeMotion& motion = pair.motion;
+  const SampleBlock& block = pair.mover.blocks[r];
+  const Feature& feature = pair.mover.features[block.feature];
+  const ExactEdge& edge = pair.base.edges[e];
   const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
   const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
   if (is_straight && is_led_all_along(placed, block, edge, way)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
   for (std::size_t side = 0; side < 2; ++side) {
-    const AnalyticSurface& surface = *pair_.base.faces[edge.faces[side]].surface;
+    const AnalyticSurface& surface = *pair.base.faces[edge.faces[side]].surface;
     if (is_straight) {
       const double distance = (placed.origin - surface.point()).dot(surface.axis());
       const double slope = placed.x.dot(surface.axis());
-      const double* t = &pair_.mover.sample_c[block.begin];
+      const double* t = &pair.mover.sample_c[block.begin];
       for (std::uint32_t i = 0; i < count; ++i) measures[side][i] = {distance + t[i] * slope, slope, 0, 0};
       continue;
     }
-    pair_.measure_all(pair_.seen_from(surface, placed, motion.free_twist), block,
-                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
+    pair.measure_all(pair.seen_from(surface, placed, motion.free_twist), block,
+                     [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
   }
   cost_.samples += 2 * count;
   for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
@@ -168,17 +206,23 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
       c.group = block.begin + begin;
       c.sample = block.begin + i;
       const auto near = [&](std::size_t side) {
-        return closest_place_to(pair_, *pair_.base.faces[edge.faces[side]].surface, placed, c.sample);
+        return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, c.sample);
       };
       cost_.closest_places += 2;
-      if (!cross_edge(pair_, placed, edge, {near(0), near(1)}, c) || !is_near(placed, size, c)) continue;
-      c.weight *= pair_.edge_cone_weight(c.sample, c.normal);
-      if (c.weight > 0) depth_max_ = std::max(depth_max_, -c.gap);
+      if (!cross_edge(pair, placed, edge, {near(0), near(1)}, c)) continue;
+      if (now != nullptr) {
+        const Vector3d here = now->point(c.place);
+        c.gap -= c.normal.dot(c.p - here);
+        c.p = here;
+      }
+      if (!is_near(placed, size, c)) continue;
+      c.weight *= pair.edge_cone_weight(c.sample, c.normal);
+      if (c.weight > 0 && now == nullptr) depth_max_ = std::max(depth_max_, -c.at.distance);
       if (c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)
-      add_row(placed, best, size, static_cast<std::uint32_t>(pair_.base.faces.size()) + e,
-              curving_of_edges(pair_, placed, best, edge));
+      add_row(placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e,
+              now != nullptr ? 0 : curving_of_edges(pair, placed, best, edge));
   }
 }
 
@@ -289,12 +333,27 @@ void Search::ask_beyond_the_end(const PlacedFeature& placed, const Candidate& be
     remaining[beyond] = std::min(remaining[beyond], best.gap_ahead - kClosestPlaceGain);
 }
 
-/// Likewise of the closest place of the candidate's segment.
+/// Likewise of the closest place of the candidate's segment. A straight one that comes down on a plane with its other
+/// end is closest there at the end of the step.
 bool Search::evaluate_segment(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t count,
                               std::uint32_t face, Candidate& c) {
-  c.place = closest_place(curve, pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample],
-                          placed.feature->half_width, placed.feature->radius_slope);
-  return evaluate_candidate(placed, face, count, c);
+  const double at_c = pair_.mover.sample_c[c.sample];
+  const double at_s = pair_.mover.sample_s[c.sample];
+  const Feature& feature = *placed.feature;
+  c.place = closest_place(curve, at_c, at_s, feature.half_width, feature.radius_slope);
+  const bool is_row = evaluate_candidate(placed, face, count, c);
+  if (placed.is_arc() || feature.half_width == 0 || !is_plane(face)) return is_row;
+  const Vector3d& n = pair_.base.faces[face].surface->axis();
+  const double slope_ahead = n.dot(turned(placed.x)) - feature.radius_slope;
+  if (!(slope_ahead * (n.dot(placed.x) - feature.radius_slope) < 0)) return is_row;
+  Candidate ahead;
+  ahead.group = c.group;
+  ahead.sample = c.sample;
+  ahead.comes_down = true;
+  ahead.place = place_at(false, at_c, at_s, slope_ahead > 0 ? -feature.half_width : feature.half_width);
+  if (!evaluate_candidate(placed, face, count, ahead) || (is_row && ahead.gap_ahead >= c.gap_ahead)) return is_row;
+  c = ahead;
+  return true;
 }
 
 /// Computes gap, normal and weight of a candidate from its sample and place; it stands for `count` segments. False if
@@ -402,11 +461,12 @@ void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, s
 }
 
 /// Fraction of a group's length that touches. A group that slopes towards the surface leaves it where the rise has used
-/// up the overlap at the closest place.
+/// up the overlap at the closest place; one that comes down, at the end of the step.
 double Search::touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const {
-  const double rise = std::abs(c.normal.dot(placed.tangent(c.place)) - placed.feature->radius_slope) * 2 *
-                      placed.feature->half_width * count;
-  const double overlap = pair_.motion.thresholds.touching + std::max(0.0, -c.gap);
+  const Vector3d tangent = placed.tangent(c.place);
+  const double slope = c.normal.dot(c.comes_down ? turned(tangent) : tangent) - placed.feature->radius_slope;
+  const double rise = std::abs(slope) * 2 * placed.feature->half_width * count;
+  const double overlap = pair_.motion.thresholds.touching + std::max(0.0, -(c.comes_down ? c.gap_ahead : c.gap));
   return rise > overlap ? overlap / rise : 1;
 }
 
@@ -437,7 +497,6 @@ void Search::add_row(const PlacedFeature& placed, const Candidate& c, std::uint3
   const auto entities = static_cast<std::uint32_t>(pair_.base.faces.size() + pair_.base.edges.size());
   const std::uint32_t source = (c.group * entities + entity) << 1 | static_cast<std::uint32_t>(motion.mover_is_second);
   rows_.add({motion.mover_is_second ? normal : Vector3d(-normal), place, c.gap, stiffness, source, curving});
-  depth_max_ = std::max(depth_max_, -c.gap);
   ++cost_.rows;
 }
 

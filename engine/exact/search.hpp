@@ -12,6 +12,7 @@ struct RelativeMotion {
   Vector3d p;        ///< m, mover's origin
   Twist free_twist;  ///< of the mover's material against the base, at the base's origin, without contact
   Twist last_twist;  ///< likewise, in the last step
+  Twist during;      ///< likewise, with which it is taken to move in this step: BodyMotion::during
   Matrix3d R_WB;     ///< base to world
   Vector3d p_WB;     ///< m
   double dt;         ///< s

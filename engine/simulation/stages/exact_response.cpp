@@ -16,6 +16,10 @@ namespace {
 /// Precise contacts are looked for this far ahead of what the bodies can close within the step [m]. A contact counts
 /// only when it closes, so more costs time and changes nothing.
 constexpr double kMargin = 1e-4;
+/// m: of the gap at the end of a step, for which contacts are found again; and how often, at most. Two or three times
+/// are enough: what the next one changes is of the order of the step smaller.
+constexpr double kCurves = 5e-6;
+constexpr int kAgainMax = 3;
 /// Rows and blocks that an island has room for at first, and by how much more than the last frame needed there is room
 /// in the next: so much more has to come at once to be left out.
 constexpr std::size_t kRowsMax = 16384;
@@ -103,7 +107,7 @@ void ExactResponse::solve(const World& world, const Neighbours& neighbours, cons
   });
   list_islands(world);
   for (const std::size_t i : world.busy)
-    if (bodies_[i].solved && island_[i] == i) solve_island(world, i, cost);
+    if (bodies_[i].solved && island_[i] == i) solve_island(world, neighbours, methods, i, cost);
   tell(world, notes);
 }
 
@@ -158,7 +162,7 @@ void ExactResponse::list_islands(const World& world) {
 void ExactResponse::begin(const World& world, const Response& response) {
   for (const std::size_t i : world.busy) {
     OfBody& of = bodies_[i];
-    of.solved = of.placed = false;
+    of.solved = of.placed = of.moves_otherwise = false;
     of.speed = 0;
     of.wrench = {};
     of.shift_moment = Vector3d::Zero();
@@ -167,6 +171,7 @@ void ExactResponse::begin(const World& world, const Response& response) {
     if (!world.bodies[i].exact || !world.moves(world.bodies[i])) continue;
     of.step = begin_implicit(world.bodies[i].rigid, response.loads(i), world.dt);
     of.velocity = of.step.free;
+    of.during << world.bodies[i].rigid.v_C, world.bodies[i].rigid.omega;
     of.speed = speed_of(world.bodies[i], of.velocity);
   }
 }
@@ -211,9 +216,7 @@ void ExactResponse::find(const World& world, const Neighbours& neighbours, const
     of.idle = false;
     if (are_apart(placed(world, link.first), placed(world, link.second), reach)) continue;
     of.calm = calm;
-    find(world, l, *search, reach);
-    cost.exact_samples += search->cost().samples;
-    cost.rows_left_out += search->rows().left_out();
+    find(world, l, *search, reach, cost);
   }
 }
 
@@ -248,7 +251,7 @@ double ExactResponse::closing(const World& world, const Link& link) const {
   return sum;
 }
 
-void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& search, double closing) {
+void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& search, double closing, FrameCost& cost) {
   const auto motion_of = [&](std::size_t i) {
     const RigidBody& rigid = world.bodies[i].rigid;
     const OfBody& of = bodies_[i];
@@ -256,12 +259,67 @@ void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& se
     if (!of.solved) return motion;
     motion.twist = {of.velocity.head<3>(), of.velocity.tail<3>()};
     motion.last_twist = {rigid.v_C, rigid.omega};
+    motion.during = Twist{of.during.head<3>(), of.during.tail<3>()};
     return motion;
   };
   search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing, links_[l].overlap);
   links_[l].search = &search;
   links_[l].found_in = world.frame;
   links_[l].depth_max = search.depth_max();
+  cost.exact_samples += search.cost().samples;
+}
+
+/// True if a link's bodies are all of one island, or do not move.
+bool ExactResponse::is_of_island(const World& world, std::size_t l, std::size_t island) const {
+  bool any = false;
+  for (const std::size_t i : {world.links[l].first, world.links[l].second}) {
+    if (!world.moves(world.bodies[i])) continue;
+    if (!bodies_[i].solved || island_[i] != island) return false;
+    any = true;
+  }
+  return any;
+}
+
+/// Marks the island's bodies that move otherwise in this step than was assumed when their contacts were found: so much
+/// faster, after a blow, that they may meet what was not looked for, or turning otherwise, so that their places leave
+/// the straight lines of the rows by more than kCurves. Their contacts are to be found for these motions.
+/// @returns whether there are any
+bool ExactResponse::mark_otherwise_moved(const World& world, std::size_t island) {
+  bool any = false;
+  for (std::size_t i = bodies_[island].first_body; i != kNone; i = bodies_[i].next) {
+    OfBody& of = bodies_[i];
+    const Vector6d& u = solver_->velocity(of.in_solver);
+    const Vector3d now = u.tail<3>(), assumed = of.during.tail<3>();
+    const double curves = 0.25 * world.dt * world.dt * (now - assumed).norm() * (now.norm() + assumed.norm()) *
+                          world.bodies[i].bounds_B.size().norm();
+    const double speed = speed_of(world.bodies[i], u);
+    of.moves_otherwise = curves > kCurves || world.dt * (speed - of.speed_hit) > 0.5 * kMargin;
+    if (!of.moves_otherwise) continue;
+    any = true;
+    of.during = u;
+    of.speed_hit = std::max(of.speed_hit, speed);
+  }
+  return any;
+}
+
+/// The contacts of the island's marked bodies, for the motions that the last solution gave. A body of another island is
+/// not met: that is the next step's.
+void ExactResponse::find_again(const World& world, const Neighbours& neighbours, const PairMethods& methods,
+                               std::size_t island, FrameCost& cost) {
+  bodies_[island].first_link = kNone;
+  for (std::size_t n = world.near_links.size(); n-- > 0;) {
+    const std::size_t l = world.near_links[n];
+    exact::ExactLink* search = methods.searching(l);
+    if (search == nullptr || !is_of_island(world, l, island)) continue;
+    const Link& link = world.links[l];
+    const bool again = bodies_[link.first].moves_otherwise || bodies_[link.second].moves_otherwise;
+    const double reach = closing(world, link);
+    if (again && gap(neighbours.box(link.first), neighbours.box(link.second)) <= reach &&
+        !are_apart(placed(world, link.first), placed(world, link.second), reach))
+      find(world, l, *search, reach, cost);
+    if (links_[l].search == nullptr || links_[l].search->rows().rows().empty()) continue;
+    links_[l].next = std::exchange(bodies_[island].first_link, l);
+  }
 }
 
 /// The island's bodies, rows and grips as a problem, solved.
@@ -284,9 +342,14 @@ void ExactResponse::solve_problem(const World& world, std::size_t island, FrameC
   cost.solver_steps += static_cast<std::uint64_t>(solver_->solve(world.dt, p.restitution_speed));
 }
 
-void ExactResponse::solve_island(const World& world, std::size_t island, FrameCost& cost) {
+void ExactResponse::solve_island(const World& world, const Neighbours& neighbours, const PairMethods& methods,
+                                 std::size_t island, FrameCost& cost) {
   const OfBody& head = bodies_[island];
   solve_problem(world, island, cost);
+  for (int again = 0; again < kAgainMax && mark_otherwise_moved(world, island); ++again) {
+    find_again(world, neighbours, methods, island, cost);
+    solve_problem(world, island, cost);
+  }
   if (squeezes_light_body(world, island)) solve_problem(world, island, cost);
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
@@ -295,6 +358,7 @@ void ExactResponse::solve_island(const World& world, std::size_t island, FrameCo
   read_bodies(island, world.dt);
   std::size_t first_row = 0;
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next) {
+    cost.rows_left_out += links_[l].search->rows().left_out();
     read_rows(world, l, first_row, cost);
     read_grip(world, l, first_row);
     first_row += links_[l].search->rows().rows().size();

@@ -55,8 +55,10 @@ class ExactResponse {
     bool solved = false;
     ImplicitStep step;
     Vector6d velocity = Vector6d::Zero(), velocity_after = Vector6d::Zero();
-    double speed = 0;      ///< m/s, bound of that of any of its points without contact
-    double speed_hit = 0;  ///< m/s, likewise if another body hits it in this step
+    double speed = 0;                    ///< m/s, bound of that of any of its points without contact
+    double speed_hit = 0;                ///< m/s, likewise if another body hits it in this step
+    Vector6d during = Vector6d::Zero();  ///< with which it was taken to move when its contacts were found
+    bool moves_otherwise = false;        ///< than that
     Wrench wrench;
     Vector3d shift_moment = Vector3d::Zero();
     Bounds box_B;
@@ -92,12 +94,17 @@ class ExactResponse {
   void begin(const World& world, const Response& response);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
   void begin_frame(const World& world, OfLink& of) const;
-  void find(const World& world, std::size_t link, exact::ExactLink& search, double closing);
+  void find(const World& world, std::size_t link, exact::ExactLink& search, double closing, FrameCost& cost);
+  [[nodiscard]] bool is_of_island(const World& world, std::size_t link, std::size_t island) const;
   [[nodiscard]] const exact::OrientedBox& placed(const World& world, std::size_t body);
   void expect_blows(const World& world, const PairMethods& methods);
   void list_islands(const World& world);
   [[nodiscard]] double closing(const World& world, const Link& link) const;
-  void solve_island(const World& world, std::size_t island, FrameCost& cost);
+  void solve_island(const World& world, const Neighbours& neighbours, const PairMethods& methods, std::size_t island,
+                    FrameCost& cost);
+  [[nodiscard]] bool mark_otherwise_moved(const World& world, std::size_t island);
+  void find_again(const World& world, const Neighbours& neighbours, const PairMethods& methods, std::size_t island,
+                  FrameCost& cost);
   void solve_problem(const World& world, std::size_t island, FrameCost& cost);
   void add_grip(const World& world, std::size_t link);
   [[nodiscard]] Pressing pressing(std::size_t link, std::size_t first_row) const;
