@@ -6,9 +6,9 @@
 
 namespace verisim::exact {
 
-/// How far below its linear change the gap to a face's surface is at the end of the step [m, <= 0], if the bodies move as
-/// they are taken to (RelativeMotion::during): surfaces and motion are curved, and along the feature the closest place
-/// moves.
+/// How far below its linear change the gap to a face's surface is at the end of the step [m, <= 0], if the bodies move
+/// as they are taken to (RelativeMotion::during): surfaces and motion are curved, and along the feature the closest
+/// place moves.
 [[nodiscard]] double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c,
                              const AnalyticSurface& surface);
 

@@ -38,13 +38,13 @@
 // A row first appears with a gap of the margin or more and so without force, except for those of a group's ends.
 //
 // Accuracy. Rows are linear; motion and surfaces are curved. A row knows what curves take from its gap within the step,
-// (v dt)^2 / (2 rho) for a place that slides with speed v along a wall of radius of curvature rho, if the bodies move as
-// BodyMotion::during says (ContactRow::curving). Where a blow makes that wrong by more than some micrometres, the
+// (v dt)^2 / (2 rho) for a place that slides with speed v along a wall of radius of curvature rho, if the bodies move
+// as BodyMotion::during says (ContactRow::curving). Where a blow makes that wrong by more than some micrometres, the
 // contacts are found again for the motion that it gave (simulation/stages/exact_response.cpp). What is left is of third
 // order. Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there
-// is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7 um.
-// A straight edge may come down with another end than is nearest now, or on an edge that it does not cross now: both are
-// looked for as the free motion turns it.
+// is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7
+// um. A straight edge may come down with another end than is nearest now, or on an edge that it does not cross now:
+// both are looked for as the free motion turns it.
 #pragma once
 
 #include <memory>

@@ -92,6 +92,15 @@ inline std::vector<Kind> thin_kinds() {
           {"blade", box(0.03, 0.003, 0.0005)}};
 }
 
+/// With inner corners, at which edges end without a corner of the body, and with tips.
+inline std::vector<Kind> cornered_kinds() {
+  return {
+      {"cross", box(0.03, 0.008, 0.008) + box(0.008, 0.03, 0.008)},
+      {"ell", moved(box(0.03, 0.008, 0.01), {0, -0.008, 0}) + moved(box(0.008, 0.024, 0.01), {-0.011, 0, 0})},
+      {"bicone", moved(cone(0, 0.012, 0.01), {0, 0, -0.005}) + moved(cone(0.012, 0, 0.01), {0, 0, 0.005})},
+      {"hourglass", moved(cone(0.012, 0.005, 0.01), {0, 0, -0.005}) + moved(cone(0.005, 0.012, 0.01), {0, 0, 0.005})}};
+}
+
 /// Their upper faces, or highest points, at z = 0.
 inline std::vector<Kind> seat_kinds() {
   const double eighth = pinned::kFullTurn / 8, quarter = 2 * eighth;

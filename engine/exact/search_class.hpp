@@ -1,0 +1,78 @@
+// The class behind search(): what is common to features against faces (search.cpp) and edges against edges
+// (search_edges.cpp). Private to this folder.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "engine/exact/candidate.hpp"
+#include "engine/exact/near_pairs.hpp"
+#include "engine/exact/ownership_culling.hpp"
+
+namespace verisim::exact {
+
+inline constexpr double kSlack = 1e-9;  // m: more than double precision says of bodies of kilometres
+
+class Search {
+ public:
+  Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
+      : pair_{mover, base, motion}, near_(mover, base, motion), rows_(rows), cost_(cost) {}
+
+  double run(NodePairs& stack);
+
+ private:
+  [[nodiscard]] const PlacedFeature& placed_feature(const SampleBlock& block);
+  void test_block(std::uint32_t block, std::uint32_t face);
+  void cross_block(std::uint32_t block, std::uint32_t edge);
+  void cross_block(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature* now, std::uint32_t block,
+                   std::uint32_t edge);
+  [[nodiscard]] bool slopes_turn(const PlacedFeature& placed, const ExactEdge& edge) const;
+  [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
+  [[nodiscard]] bool is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
+                                      double way) const;
+  [[nodiscard]] double longest_way(const PlacedFeature& placed, const SampleBlock& block) const;
+  void reduce_group(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t begin,
+                    std::span<double> now, std::span<double> remaining, std::uint32_t face);
+  [[nodiscard]] bool evaluate_segment(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t count,
+                                      std::uint32_t face, Candidate& c);
+  [[nodiscard]] bool is_plane(std::uint32_t face) const {
+    return pair_.base.faces[face].surface->kind() == SurfaceKind::plane;
+  }
+  /// A direction of the mover at the end of the step without contact.
+  [[nodiscard]] Vector3d turned(const Vector3d& direction) const {
+    return direction + pair_.motion.dt * pair_.motion.free_twist.angular.cross(direction);
+  }
+  [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
+  [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
+  [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
+                                        Candidate& c);
+  [[nodiscard]] bool is_near(const PlacedFeature& placed, std::uint32_t count, Candidate& c) const;
+  [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
+  [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
+  void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
+  static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
+  void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
+                     std::uint32_t face);
+  void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
+  void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity,
+               double curving);
+
+  const BodyPair pair_;
+  NearPairs near_;
+  RowList& rows_;
+  SearchCost& cost_;
+  double depth_max_ = 0;
+  PlacedFeature placed_{};  ///< of the block that was tested last
+};
+
+/// The feature of a block in the coordinates of the base. Blocks are tested one after the other, each against several
+/// entities.
+inline const PlacedFeature& Search::placed_feature(const SampleBlock& block) {
+  const Feature& feature = pair_.mover.features[block.feature];
+  const RelativeMotion& motion = pair_.motion;
+  if (placed_.feature != &feature)
+    placed_ = {&feature, motion.R * feature.origin + motion.p, motion.R * feature.x, motion.R * feature.y};
+  return placed_;
+}
+
+}  // namespace verisim::exact

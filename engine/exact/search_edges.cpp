@@ -1,0 +1,136 @@
+// Edges of the mover against convex edges of the base.
+#include "engine/exact/curving.hpp"
+#include "engine/exact/edge_crossing.hpp"
+#include "engine/exact/search_class.hpp"
+
+namespace verisim::exact {
+
+void Search::cross_block(std::uint32_t r, std::uint32_t e) {
+  const SampleBlock& block = pair_.mover.blocks[r];
+  const Feature& feature = pair_.mover.features[block.feature];
+  if (feature.own_face != kNoFace || feature.half_width == 0) return;
+  const ExactEdge& edge = pair_.base.edges[e];
+  const PlacedFeature& placed = placed_feature(block);
+  if (may_cross_edge(pair_, placed, edge)) return cross_block(pair_, placed, nullptr, r, e);
+  if (!slopes_turn(placed, edge)) return;
+  // A straight edge that slopes the same way from both faces crosses none, but will do so after the step.
+  const RelativeMotion& motion = pair_.motion;
+  const PlacedFeature ahead{&feature, placed.origin + pair_.moved(placed.origin, motion.free_twist), turned(placed.x),
+                            placed.y};
+  RelativeMotion still = motion;
+  still.free_twist = still.last_twist = {};
+  const BodyPair pair_ahead{pair_.mover, pair_.base, still};
+  if (may_cross_edge(pair_ahead, ahead, edge)) cross_block(pair_ahead, ahead, &placed, r, e);
+}
+
+/// True if a straight feature leaves both faces of an edge of two planes in the same direction, but not after the step.
+bool Search::slopes_turn(const PlacedFeature& placed, const ExactEdge& edge) const {
+  const Vector3d& a = pair_.base.faces[edge.faces[0]].surface->axis();
+  const Vector3d& b = pair_.base.faces[edge.faces[1]].surface->axis();
+  const Vector3d after = turned(placed.x);
+  return a.dot(placed.x) * b.dot(placed.x) >= 0 && a.dot(after) * b.dot(after) < 0;
+}
+
+/// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step
+/// without contact.
+/// @param pair    with the motion from `placed` on
+/// @param placed  where the mover's curve is, or after the step
+/// @param now     where it is now, if the crossing is that after the step; else null
+void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature* now, std::uint32_t r,
+                         std::uint32_t e) {
+  const RelativeMotion& motion = pair.motion;
+  const SampleBlock& block = pair.mover.blocks[r];
+  const Feature& feature = pair.mover.features[block.feature];
+  const ExactEdge& edge = pair.base.edges[e];
+  const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
+  const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
+  if (is_straight && is_led_all_along(placed, block, edge, way)) return;
+  std::array<std::array<Measure, kBlockSize>, 2> measures;
+  const std::uint32_t count = block.end - block.begin;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const AnalyticSurface& surface = *pair.base.faces[edge.faces[side]].surface;
+    if (is_straight) {
+      const double distance = (placed.origin - surface.point()).dot(surface.axis());
+      const double slope = placed.x.dot(surface.axis());
+      const double* t = &pair.mover.sample_c[block.begin];
+      for (std::uint32_t i = 0; i < count; ++i) measures[side][i] = {distance + t[i] * slope, slope, 0, 0};
+      continue;
+    }
+    pair.measure_all(pair.seen_from(surface, placed, motion.free_twist), block,
+                     [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
+  }
+  cost_.samples += 2 * count;
+  for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
+    const std::uint32_t size = std::min(feature.group, count - begin);
+    Candidate best;
+    best.gap_ahead = kOutOfReach;
+    for (std::uint32_t i = begin; i < begin + size; ++i) {
+      if (!may_cross(feature, measures[0][i], measures[1][i], way)) continue;
+      Candidate c;
+      c.group = block.begin + begin;
+      c.sample = block.begin + i;
+      const auto near = [&](std::size_t side) {
+        return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, c.sample);
+      };
+      cost_.closest_places += 2;
+      if (!cross_edge(pair, placed, edge, {near(0), near(1)}, c)) continue;
+      if (now != nullptr) {
+        const Vector3d here = now->point(c.place);
+        c.gap -= c.normal.dot(c.p - here);
+        c.p = here;
+      }
+      if (!is_near(placed, size, c)) continue;
+      c.weight *= pair.edge_cone_weight(c.sample, c.normal);
+      if (c.weight > 0 && now == nullptr) depth_max_ = std::max(depth_max_, -c.at.distance);
+      if (c.gap_ahead < best.gap_ahead) best = c;
+    }
+    if (best.gap_ahead != kOutOfReach)
+      add_row(placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e,
+              now != nullptr ? 0 : curving_of_edges(pair, placed, best, edge));
+  }
+}
+
+/// True if may_cross() would be false of all segments of a straight block: one of two planes leads at both of its ends,
+/// by more than a step may change.
+bool Search::is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
+                              double way) const {
+  const auto lead_at = [&](double t) {
+    const Vector3d p = placed.origin + t * placed.x;
+    const AnalyticSurface& a = *pair_.base.faces[edge.faces[0]].surface;
+    const AnalyticSurface& b = *pair_.base.faces[edge.faces[1]].surface;
+    return (p - a.point()).dot(a.axis()) - (p - b.point()).dot(b.axis());
+  };
+  const double half = placed.feature->half_width;
+  const double first = lead_at(pair_.mover.sample_c[block.begin] - half);
+  const double last = lead_at(pair_.mover.sample_c[block.end - 1] + half);
+  return first * last > 0 && std::min(std::abs(first), std::abs(last)) > 2 * way + 2 * kSlack;
+}
+
+/// False if a segment is out of reach of the faces of an edge, or one of them is farther all along it. Of its middle's
+/// distances. Along a straight segment the lead of one plane over the other is linear; unless the motion that a rule
+/// looks at changes it, it is zero between the ends or nowhere.
+/// @param way  m, longest of a place of the segment within a step; infinite if the segment or a face is curved
+bool Search::may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const {
+  const RelativeMotion& motion = pair_.motion;
+  const double half = feature.half_width;
+  if (std::max(nearest_of(a, half, 0), nearest_of(b, half, 0)) >= motion.margin) return false;
+  // A parabola's error is less than itself, and rules of motion compare what the step may change.
+  const double change = half * (std::abs(a.slope - b.slope) + half * (std::abs(a.bend) + std::abs(b.bend)));
+  const bool runs_along = change < motion.thresholds.coincident;
+  const double lead = std::abs(a.distance - b.distance);
+  return !runs_along && lead < 2 * (change + motion.margin) && lead < change + 2 * way + kSlack;
+}
+
+/// Bound of the way of a straight block's places within a step [m], by either of the motions that the rules of
+/// ownership look at.
+double Search::longest_way(const PlacedFeature& placed, const SampleBlock& block) const {
+  const double first = pair_.mover.sample_c[block.begin] - placed.feature->half_width;
+  const double last = pair_.mover.sample_c[block.end - 1] + placed.feature->half_width;
+  double way = 0;  // it is convex along the block: the longest is that of an end
+  for (const Twist* twist : {&pair_.motion.free_twist, &pair_.motion.last_twist})
+    for (const double c : {first, last})
+      way = std::max(way, pair_.moved(placed.origin + c * placed.x, *twist).squaredNorm());
+  return std::sqrt(way);
+}
+
+}  // namespace verisim::exact
