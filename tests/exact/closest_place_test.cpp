@@ -13,8 +13,8 @@ INSTANTIATE_TEST_SUITE_P(Sorts, ClosestPlace, ::testing::ValuesIn(testing::kSurf
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // Segments of lines and arcs that pass at any angle, at any distance from axes and apices: no place within a hundredth
-// of the segment is closer. (The last of four steps of Newton's method that had arrived was taken for one that had not:
-// one in 3,000 places lay beside an axis by a quarter of its segment, and a slot's edge sank by 30 um into a cone.)
+// of the segment is closer. (Newton's method that had arrived at its fourth step was taken for one that had not: the
+// place was moved by as much as a quarter of its segment, and a slot's edge sank by 30 um into a cone.)
 TEST_P(ClosestPlace, HasNoCloserPlaceBesideTheClosest) {
   constexpr double kAccuracy = 3 * kClosestPlaceGain;
   for (const std::uint64_t seed : verisim::test::seeds(20000)) {
