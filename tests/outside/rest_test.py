@@ -12,7 +12,8 @@ from scene_test import HERE, LONG, SceneTest
 
 INTEGRATORS = ("semi-implicit", "implicit")
 MASS = {"box": 0.096, "disc": 0.0100531, "tube": 0.0120637, "frustum": 0.0146608, "sphere": 0.0335103,
-        "spherecone": 0.113097, "bowl": 0.0335103, "cylside": 0.100531, "vgroove": 0.100531, "bowlcyl": 0.0753982}  # kg: 1000 kg/m^3 of the solids' volumes
+        "spherecone": 0.113097, "bowl": 0.0335103, "cylside": 0.100531, "vgroove": 0.100531,
+        "bowlcyl": 0.0753982}  # kg: 1000 kg/m^3 of the solids' volumes
 HAND_AND_COUPLING = 300 * 400 / (300 + 400)  # N/m in series
 
 # Wanted: 0.1 mm and 0.01. There is no friction: what a body was given while its voxels took up its weight, it keeps.
@@ -41,8 +42,9 @@ class RestTest(SceneTest):
 
     def test_nothing_pushes_sideways_what_lies_on_a_larger_plate(self):
         # By voxels there is no friction: while they take up a body's weight it may tilt by 0.01, and what that gives it
-        # stays. Of 40 draws the fastest under `restore` had 0.15 mm/s after 20 s, half of them less than 1 nm/s, and
-        # in the last 10 s the speed changed by 0.09 mm/s at most, of what stands 0.01 askew; under `off` by 1 nm/s. (With a normal midway between the two planes 8 of 20 went aside by 0.1 m and more.)
+        # stays. Of 40 draws the fastest under `restore` had 0.15 mm/s after 20 s, half of them less than 1 nm/s, and in
+        # the last 10 s the speed changed by 0.09 mm/s at most, of what stands 0.01 askew; under `off` by 1 nm/s. (With a
+        # normal midway between the two planes 8 of 20 went aside by 0.1 m and more.)
         for seed in range(40 if LONG else 4):
             draw = np.random.default_rng(seed)
             settings = {axis: draw.uniform(0.03, 0.06) for axis in "xyz"}
