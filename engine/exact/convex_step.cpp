@@ -9,8 +9,11 @@ namespace {
 /// Newton's method ends after a few iterations, a few dozen for a heap. This, and one per body of a heap, bounds the
 /// time of a step with absurd numbers.
 constexpr int kIterationsMax = 60;
-/// Relative to the cost: a smaller Newton decrement is lost in rounding.
-constexpr double kRoundingOfCost = 1e-15;
+/// Relative to the cost: a smaller Newton decrement is lost in its rounding. Then either the forces on each body
+/// balance, to so much of their sum, or so many iterations more are of use: a body of 1e-9 kg has next to no part in
+/// the cost of what lies beside it.
+constexpr double kRoundingOfCost = 1e-15, kBalanced = 1e-12;
+constexpr int kBelowRounding = 8;
 /// Blocks below the diagonal of the sparse factor that there is room for at first, per body: a heap of boxes needs 6.
 constexpr std::size_t kBlocksPerBody = 16;
 
@@ -211,10 +214,11 @@ void ConvexStep::choose_start(double dt) {
 /// the first term of the cost these are one parabola. What is left are few.
 void ConvexStep::prepare_line_search(double dt) {
   LineValue sum{};
+  double twice_cost = 0;
   for (const Body& body : bodies_) {
     const Vector6d off = body.u - body.u0;
     const Vector6d push = body.M * body.direction;
-    sum.cost += off.dot(body.M * off);
+    twice_cost += off.dot(body.M * off);
     sum.slope += off.dot(push);
     sum.curvature += body.direction.dot(push);
   }
@@ -223,29 +227,31 @@ void ConvexStep::prepare_line_search(double dt) {
     Row& row = rows_[r];
     row.dz = dz;
     const bool acts = row.acts();
+    if (acts) twice_cost += row.k * row.z * row.z;
     if (!row.both && acts != (row.z + dz < 0)) {
       crossing_.push_back(static_cast<std::uint32_t>(r));
     } else if (acts) {
-      const double force = row.k * row.z;
-      sum.cost += force * row.z;
-      sum.slope += force * dz;
+      sum.slope += row.k * row.z * dz;
       sum.curvature += row.k * dz * dz;
     }
   });
-  sum.cost *= 0.5;
   line_begin_ = sum;
+  cost_ = 0.5 * twice_cost;
 }
 
 /// @param t  from 0 to 1
 ConvexStep::LineValue ConvexStep::value_along(double t) const {
   const LineValue& begin = line_begin_;
-  LineValue sum{begin.cost + t * (begin.slope + 0.5 * t * begin.curvature), begin.slope + t * begin.curvature,
-                begin.curvature};
+  LineValue sum{t * (begin.slope + 0.5 * t * begin.curvature), begin.slope + t * begin.curvature, begin.curvature};
   for (const std::uint32_t r : crossing_) {
     const Row& row = rows_[r];
     const double gap = row.z + t * row.dz;
-    if (!(gap < 0)) continue;
-    sum.cost += 0.5 * row.k * gap * gap;
+    const double pressed = std::min(0.0, row.z);
+    if (!(gap < 0)) {
+      sum.change -= 0.5 * row.k * pressed * pressed;
+      continue;
+    }
+    sum.change += 0.5 * row.k * (gap - pressed) * (gap + pressed);
     sum.slope += row.k * gap * row.dz;
     sum.curvature += row.k * row.dz * row.dz;
   }
@@ -258,7 +264,7 @@ double ConvexStep::step_length(const LineValue& begin) const {
   constexpr double kEnough = 1e-4;  // of the slope at the start: Armijo's usual constant
   constexpr double kFlat = 1e-10;   // of the slope at the start
   LineValue here = value_along(1);
-  if (here.cost <= begin.cost + kEnough * begin.slope) return 1;
+  if (here.change <= kEnough * begin.slope) return 1;
   double low = 0;
   double high = 1;
   double t = 1;
@@ -284,9 +290,32 @@ bool ConvexStep::advance(double t) {
   return same;
 }
 
+/// Do the impulses on each body cancel, but for kBalanced of their sum?
+bool ConvexStep::are_balanced(double dt) {
+  for (Body& body : bodies_) {
+    body.left = body.M * (body.u - body.u0);
+    body.summed = {body.left.head<3>().norm(), body.left.tail<3>().norm()};
+  }
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    if (!rows_[r].acts()) continue;
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (rests_[r].body[side] == kFixed) continue;
+      Body& body = bodies_[at(rests_[r].body[side])];
+      const Vector6d impulse = dt * rows_[r].k * rows_[r].z * jacobian(r, side);
+      body.left += impulse;
+      body.summed += Eigen::Vector2d(impulse.head<3>().norm(), impulse.tail<3>().norm());
+    }
+  }
+  return std::all_of(bodies_.begin(), bodies_.end(), [](const Body& body) {
+    return body.left.head<3>().norm() <= kBalanced * body.summed[0] &&
+           body.left.tail<3>().norm() <= kBalanced * body.summed[1];
+  });
+}
+
 int ConvexStep::minimize(double dt) {
   const bool is_sparse = bodies_.size() > kDenseMax;
   const int most = kIterationsMax + (is_sparse ? static_cast<int>(bodies_.size()) : 0);
+  int below_rounding = 0;
   for (int i = 0; i < most; ++i) {
     const bool moves = bodies_.size() == 1 ? find_direction_of_one(dt)
                        : is_sparse         ? find_direction_sparse(dt)
@@ -294,16 +323,12 @@ int ConvexStep::minimize(double dt) {
     if (!moves) return i;
     prepare_line_search(dt);
     const LineValue begin = value_along(0);
-    // Is the Newton decrement below the rounding of the cost?
-    if (-begin.slope <= kRoundingOfCost * begin.cost) {
-      // What is lost in the cost's rounding is not in a stiff row's force: 1e-12 m/s is 1e-6 N at 1e9 N/m.
-      advance(1);
-      return i;
-    }
     const double t = step_length(begin);
     const bool same = advance(t);
     // With the same rows acting the cost is one parabola, and a full Newton step ends at its minimum.
     if (same && t == 1) return i + 1;
+    if (-begin.slope > kRoundingOfCost * cost_) continue;
+    if (++below_rounding == kBelowRounding || are_balanced(dt)) return i + 1;
   }
   finished_ = false;
   return most;

@@ -155,6 +155,8 @@ class ConvexStep {
     Vector6d push = Vector6d::Zero();     ///< wrench()
     Vector6d without = Vector6d::Zero();  ///< u0 of the step, while u0 is that of the rebound
     Vector3d shift_moment = Vector3d::Zero();
+    Vector6d left = Vector6d::Zero();  ///< N s, N m s: sum of all impulses
+    Eigen::Vector2d summed{0, 0};      ///< likewise, of their magnitudes
   };
   /// What each iteration reads of a row.
   struct Row {
@@ -202,9 +204,9 @@ class ConvexStep {
     Vector3d along, across, normal;
     double radius;
   };
-  /// The cost along the search direction and its first two derivatives, at step length t.
+  /// What the cost has changed by along the search direction, and its first two derivatives, at step length t.
   struct LineValue {
-    double cost, slope, curvature;
+    double change, slope, curvature;
   };
 
   [[nodiscard]] const RowRest& row_of(std::size_t added) const { return rests_[added_[added].row]; }
@@ -242,6 +244,7 @@ class ConvexStep {
   [[nodiscard]] LineValue value_along(double t) const;
   [[nodiscard]] double step_length(const LineValue& begin) const;
   bool advance(double t);
+  [[nodiscard]] bool are_balanced(double dt);
 
   std::vector<Row> rows_;
   std::vector<RowRest> rests_;
@@ -255,6 +258,7 @@ class ConvexStep {
   std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
   bool finished_ = true, hit_ = false, late_ = false;
+  double cost_ = 0;         ///< at the start of the search direction
   LineValue line_begin_{};  ///< of all that is one parabola along the direction, for t from 0 to 1, at t = 0
   /// The others: rows that begin or cease to act somewhere between. Their numbers.
   std::vector<std::uint32_t> crossing_;

@@ -346,11 +346,12 @@ void ExactResponse::solve_island(const World& world, const Neighbours& neighbour
                                  std::size_t island, FrameCost& cost) {
   const OfBody& head = bodies_[island];
   solve_problem(world, island, cost);
+  // First: what slips away without its grip moves like nothing that contacts are to be found for.
+  if (squeezes_light_body(world, island)) solve_problem(world, island, cost);
   for (int again = 0; again < kAgainMax && mark_otherwise_moved(world, island); ++again) {
     find_again(world, neighbours, methods, island, cost);
     solve_problem(world, island, cost);
   }
-  if (squeezes_light_body(world, island)) solve_problem(world, island, cost);
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
   rows_needed_ = std::max(rows_needed_, solver_->row_count() + solver_->left_out());
