@@ -22,6 +22,10 @@ struct PlacedFeature {
   [[nodiscard]] Vector3d tangent(const Place& at) const { return is_arc() ? Vector3d(at.c * y - at.s * x) : x; }
 };
 
+[[nodiscard]] inline PlacedFeature placed_by(const Placement& at, const Feature& feature) {
+  return {&feature, at.R * feature.origin + at.p, at.R * feature.x, at.R * feature.y};
+}
+
 /// A place on a feature that may become a row.
 struct Candidate {
   std::uint32_t group = 0;   ///< first sample of the group
@@ -58,11 +62,11 @@ struct BodyPair {
   }
   /// How far a contact's normal lies in the mover's normal cone at a sample: 1 inside of it, 0 from cone_none on.
   [[nodiscard]] double normal_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
-    return normal_cone_weight_in_mover(sample, motion.R.transpose() * normal);
+    return normal_cone_weight_in_mover(sample, motion.now.R.transpose() * normal);
   }
   /// Likewise, of a normal of edge against edge.
   [[nodiscard]] double edge_cone_weight(std::uint32_t sample, const Vector3d& normal) const {
-    return normal_cone_weight_in_mover(sample, motion.R.transpose() * normal, motion.thresholds.cone_of_edges);
+    return normal_cone_weight_in_mover(sample, motion.now.R.transpose() * normal, motion.thresholds.cone_of_edges);
   }
   /// Sine of the angle by which a normal lies out of the mover's normal cone at a sample; 0 within.
   /// @param n  the normal in the mover's coordinates, here and below

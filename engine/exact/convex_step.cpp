@@ -345,6 +345,11 @@ int ConvexStep::solve(double dt, double threshold) {
   note_hits(dt, threshold);
   choose_start(dt);
   int iterations = minimize(dt);
+  if (const double share = share_of_curving(); share < 1) {
+    scale_curving(share);
+    choose_start(dt);
+    iterations += minimize(dt);
+  }
   for (Body& body : bodies_) body.during = body.u;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row& row = rows_[r];

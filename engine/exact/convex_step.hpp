@@ -31,9 +31,9 @@
 // Damping. Springs alone are elastic. What keeps a contact from ringing is the step itself: implicit Euler's damping,
 // which fades where the step is no longer long beside sqrt(m / k), in short steps and soft contacts. There a row that
 // overlaps is damped, with the time tau = max(0, kDamped sqrt(m / k) - dt): its force is -k (g + (dt + tau) J u). k: of
-// all rows of the two bodies, m: of the lighter one. Friction. A grip is a quadratic term more, dt c/2 |w|^2, of the
-// velocity w of one body against the other at one point: along two tangents, and of their spin about the normal. It
-// takes energy and keeps momentum. How large c is the caller says. Late rows, of more than kDenseMax bodies, with
+// the stiffest row of the two bodies, m: of the lighter one. Friction. A grip is a quadratic term more, dt c/2 |w|^2,
+// of the velocity w of one body against the other at one point: along two tangents, and of their spin about the normal.
+// It takes energy and keeps momentum. How large c is the caller says. Late rows, of more than kDenseMax bodies, with
 // restitution, or of a pair that began inside of each other. A row that overlaps by more than the pair did before and
 // the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give: it
 // moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
@@ -221,8 +221,11 @@ class ConvexStep {
   void note_hits(double dt, double threshold);
   void note_hits(const Run& run, double dt, double threshold, double tau);
   [[nodiscard]] double lighter_mass(const Run& run) const;
+  [[nodiscard]] double stiffest(const Run& run) const;
   [[nodiscard]] double damping_time(const Run& run, double dt) const;
   void damp(const Run& run, double dt, double tau);
+  [[nodiscard]] double share_of_curving() const;
+  void scale_curving(double share);
   [[nodiscard]] bool begin_rebound(double dt);
   void move_rows(double dt);
   void end_rebound();

@@ -18,6 +18,9 @@ constexpr double kUnknown = 1e-5;
 /// its speed at most; with 0.05 where the step alone is that long.
 constexpr double kDamped = 4;
 
+/// Of the kinetic energy at the start: what begins to slide along a curve gains (v dt / 2 rho)^2 once.
+constexpr double kTurnsOnce = 1e-2;
+
 }  // namespace
 
 /// Finds the rows that are hit if they close within the step, and makes them rigid; those that are late; and damps
@@ -37,10 +40,15 @@ double ConvexStep::lighter_mass(const Run& run) const {
   return run.body[1] == kFixed ? mass : std::min(mass, bodies_[at(run.body[1])].M(0, 0));
 }
 
+double ConvexStep::stiffest(const Run& run) const {
+  double stiffest = 0;
+  for (std::size_t r = run.begin; r < run.end; ++r) stiffest = std::max(stiffest, rows_[r].k);
+  return stiffest;
+}
+
+/// Of the stiffest row: of all rows that are near few act.
 double ConvexStep::damping_time(const Run& run, double dt) const {
-  double stiffness = 0;
-  for (std::size_t r = run.begin; r < run.end; ++r) stiffness += rows_[r].k;
-  return std::max(0.0, kDamped * std::sqrt(lighter_mass(run) / stiffness) - dt);
+  return std::max(0.0, kDamped * std::sqrt(lighter_mass(run) / stiffest(run)) - dt);
 }
 
 void ConvexStep::damp(const Run& run, double dt, double tau) {
@@ -56,10 +64,8 @@ void ConvexStep::damp(const Run& run, double dt, double tau) {
 }
 
 void ConvexStep::note_hits(const Run& run, double dt, double threshold, double tau) {
-  double stiffest = 0;
-  for (std::size_t r = run.begin; r < run.end; ++r) stiffest = std::max(stiffest, rows_[r].k);
   // The same factor for all rows of the pair: one that fades in or out keeps its weight.
-  const double factor = std::max(1.0, kRigid * lighter_mass(run) / (dt * dt) / stiffest);
+  const double factor = std::max(1.0, kRigid * lighter_mass(run) / (dt * dt) / stiffest(run));
   const bool is_hit = run.pair.restitution > 0 || tau > 0;
   for (std::size_t r = run.begin; r < run.end; ++r) {
     Row& row = rows_[r];
@@ -79,6 +85,36 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold, double t
       row.k *= factor;
     }
     hit_ = hit_ || rest.asked >= 0;
+  }
+}
+
+/// How much of what curves may be taken: less than 1 where the contacts have done more work than the springs held that
+/// were pressed at the start, by more than kTurnsOnce. A row that is told of too much pushes the bodies apart, the work
+/// as the square of it.
+double ConvexStep::share_of_curving() const {
+  double held = 0;
+  bool any = false;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
+    if (row.both || !row.acts()) continue;
+    any = any || rests_[r].curving < 0;
+    const double overlap = std::max(0.0, rests_[r].curving - row.g);
+    held += 0.5 * rests_[r].stretch * row.k * overlap * overlap;
+  }
+  if (!any || late_) return 1;
+  double work = 0, kinetic = 0;
+  for (const Body& body : bodies_) {
+    work += 0.5 * (body.M * (body.u - body.u0)).dot(body.before + body.u);
+    kinetic += 0.5 * body.before.dot(body.M * body.before);
+  }
+  const double most = kTurnsOnce * kinetic;
+  return work > held + most ? std::sqrt(most / (work - held)) : 1;
+}
+
+void ConvexStep::scale_curving(double share) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    rows_[r].g += (share - 1) * rests_[r].curving;
+    rests_[r].curving *= share;
   }
 }
 

@@ -10,13 +10,34 @@ double curving_along(const BodyPair& pair, const Vector3d& way, double curves) {
   return curves < -pair.motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
 }
 
-/// Where the feature is after the step, if the bodies move as they are taken to.
-PlacedFeature moved_on(const BodyPair& pair, const PlacedFeature& placed) {
-  const RelativeMotion& motion = pair.motion;
-  const Vector3d turn = motion.dt * motion.during.angular;
-  const auto turned = [&](const Vector3d& v) { return Vector3d(v + turn.cross(v + 0.5 * turn.cross(v))); };
-  const Vector3d moved = pair.moved(placed.origin, motion.during);
-  return {placed.feature, placed.origin + moved + 0.5 * turn.cross(moved), turned(placed.x), turned(placed.y)};
+/// The place of `count` segments from `first` on that is closest to a surface.
+Place closest_of(const BodyPair& pair, const PlacedFeature& placed, const AnalyticSurface& surface, std::uint32_t first,
+                 std::uint32_t count) {
+  const double half = placed.feature->half_width;
+  const Place middle = place_at(placed.is_arc(), pair.mover.sample_c[first], pair.mover.sample_s[first],
+                                half * (static_cast<double>(count) - 1));
+  return closest_place(pair.seen_from(surface, placed, {}), middle.c, middle.s, count * half,
+                       placed.feature->radius_slope);
+}
+
+/// The smallest gap to a face of the candidate's segment; with a count of 0 that of its place. If the group, of `count`
+/// segments, is nearer by more than what touches anyway, and on the face, that of the group.
+double closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactFace& face,
+                   std::uint32_t count) {
+  const AnalyticSurface& surface = *face.surface;
+  const auto gap_at = [&](const Place& place) {
+    return surface.at(placed.point(place)).distance - placed.feature->radius_at(place.c);
+  };
+  if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
+  const double of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
+  if (count == 1) return of_segment;
+  const Place place = closest_of(pair, placed, surface, c.group, count);
+  const double of_group = gap_at(place);
+  if (of_group > of_segment - pair.motion.thresholds.touching) return of_segment;
+  const Vector3d p = placed.point(place);
+  const SurfaceAt at = surface.at(p);
+  const Vector3d foot = p - at.distance * at.normal;
+  return face.trim->find(surface, foot).where == Trim::Where::outside ? of_segment : of_group;
 }
 
 double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& after,
@@ -35,37 +56,26 @@ double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const
 
 }  // namespace
 
-double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const AnalyticSurface& surface) {
+double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactFace& face,
+               std::uint32_t count) {
   const RelativeMotion& motion = pair.motion;
   const Feature& feature = *placed.feature;
   const Vector3d way = pair.moved(c.p, motion.during);
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  if (!placed.is_arc() && surface.kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
-    return curving_along(pair, way, 0.5 * surface.axis().dot(motion.dt * motion.during.angular.cross(way)));
-  const auto least = [&](const PlacedFeature& at) {
-    double gap = 0;
-    with_measure(pair.seen_from(surface, at, {}), [&](auto&& measure_at) {
-      const Measure m = measure_at(c.place.c, c.place.s);
-      const double slope = m.slope - feature.radius_slope;
-      const double reach = 2 * feature.half_width;
-      // Places farther away have rows of their own.
-      const double t = std::abs(slope) < m.bend * reach ? -slope / m.bend : 0;
-      gap = m.distance + t * (slope + 0.5 * t * m.bend);
-    });
-    return gap;
-  };
-  return curving_along(pair, way, least(moved_on(pair, placed)) - least(placed) - c.at.normal.dot(way));
+  const PlacedFeature after = placed_by(motion.after, feature);
+  if (!placed.is_arc() && face.surface->kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
+    return curving_along(pair, way, face.surface->axis().dot(after.point(c.place) - c.p - way));
+  return curving_along(pair, way, closest_gap(pair, after, c, face, count) - c.gap - c.at.normal.dot(way));
 }
 
 double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) {
   const RelativeMotion& motion = pair.motion;
   const Vector3d way = pair.moved(c.p, motion.during);
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  const PlacedFeature after = moved_on(pair, placed);
+  const PlacedFeature after = placed_by(motion.after, *placed.feature);
   if (!placed.is_arc() && edge.extent == ExactEdge::Extent::line) return curving_of_lines(pair, placed, after, c, edge);
-  RelativeMotion still = motion;
-  still.free_twist = still.last_twist = {};
-  const BodyPair there{pair.mover, pair.base, still};
+  const RelativeMotion no_motion = still(motion, motion.after);
+  const BodyPair there{pair.mover, pair.base, no_motion};
   const auto near = [&](std::size_t side) {
     return closest_place_to(there, *pair.base.faces[edge.faces[side]].surface, after, c.sample);
   };

@@ -8,9 +8,9 @@ namespace verisim::exact {
 
 /// How far below its linear change the gap to a face's surface is at the end of the step [m, <= 0], if the bodies move
 /// as they are taken to (RelativeMotion::during): surfaces and motion are curved, and along the feature the closest
-/// place moves.
+/// place moves. @param count  of the segments that the row stands for, from c.group on; 0: of its place alone
 [[nodiscard]] double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c,
-                             const AnalyticSurface& surface);
+                             const ExactFace& face, std::uint32_t count);
 
 /// Likewise of two edges: of straight ones the distance is that of their lines; else the crossing is looked for again
 /// where the step ends, and 0 if it has left the segment.

@@ -95,8 +95,8 @@ double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Ana
                     const Candidate& c) {
   const Feature& feature = *placed.feature;
   const AnalyticSurface& own = *pair.mover.faces[feature.own_face].surface;
-  const Matrix3d to_mover = pair.motion.R.transpose();
-  const Vector3d place = to_mover * (c.p - pair.motion.p);
+  const Matrix3d to_mover = pair.motion.now.R.transpose();
+  const Vector3d place = to_mover * (c.p - pair.motion.now.p);
   const auto off = [&](const Vector3d& normal) {
     return std::abs(own.at(place - feature.radius_at(c.place.c) * (to_mover * normal)).distance);
   };
@@ -175,7 +175,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
   const Vector3d foot = c.p - c.at.distance * c.at.normal;
   if (feature.own_face != kNoFace) {
     const Vector3d contact_point =
-        pair.motion.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.p);
+        pair.motion.now.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.now.p);
     const SearchThresholds& fade = pair.motion.thresholds;
     const double off = off_own_face(pair, placed, *pair.base.faces[face].surface, c);
     c.weight = std::min(1.0, (fade.own_face_none - off) / (fade.own_face_none - fade.own_face_full));

@@ -13,12 +13,25 @@ Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d&
   return twist.linear + twist.angular.cross(p_W - body.p_WC);
 }
 
+Twist during(const BodyMotion& body) {
+  return body.during.value_or(body.last_twist);
+}
+
+/// Where a body is after a step: its centre of mass goes straight on, and the body turns about it.
+Pose after(const BodyMotion& body, const Twist& twist, double dt) {
+  const Quaterniond turn = rotation_from_vector(dt * twist.angular);
+  return {body.p_WC + dt * twist.linear + turn * (body.X_WB.position - body.p_WC), turn * body.X_WB.rotation};
+}
+
+Placement placement(const Pose& X_WM, const Pose& X_WB) {
+  const Pose X_BM = X_WB.inverse() * X_WM;
+  return {X_BM.rotation.toRotationMatrix(), X_BM.position};
+}
+
 RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, double dt, double margin,
                                double overlap, double size, bool mover_is_second, const SearchThresholds& thresholds) {
   RelativeMotion motion;
-  const Pose X_BM = base.X_WB.inverse() * mover.X_WB;
-  motion.R = X_BM.rotation.toRotationMatrix();
-  motion.p = X_BM.position;
+  motion.now = placement(mover.X_WB, base.X_WB);
   const Quaterniond to_base = base.X_WB.rotation.conjugate();
   const Vector3d& origin = base.X_WB.position;
   const auto against = [&](const Twist& of_mover, const Twist& of_base) {
@@ -27,7 +40,9 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   };
   motion.free_twist = against(mover.twist, base.twist);
   motion.last_twist = against(mover.last_twist, base.last_twist);
-  motion.during = against(mover.during.value_or(mover.last_twist), base.during.value_or(base.last_twist));
+  motion.during = against(during(mover), during(base));
+  motion.ahead = placement(after(mover, mover.twist, dt), after(base, base.twist, dt));
+  motion.after = placement(after(mover, during(mover), dt), after(base, during(base), dt));
   motion.R_WB = base.X_WB.rotation.toRotationMatrix();
   motion.p_WB = base.X_WB.position;
   motion.dt = dt;
@@ -40,10 +55,9 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
 }
 
 bool is_finite(const BodyMotion& body) {
-  const Twist during = body.during.value_or(body.last_twist);
   return std::isfinite(body.X_WB.position.sum() + body.X_WB.rotation.coeffs().sum() + body.twist.linear.sum() +
                        body.twist.angular.sum() + body.last_twist.linear.sum() + body.last_twist.angular.sum() +
-                       during.linear.sum() + during.angular.sum());
+                       during(body).linear.sum() + during(body).angular.sum());
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ struct SearchThresholds {
   double cone_of_edges = 0.5;
   double slow = 1e-5;  ///< m: what moves by less within a step moves along a line
   /// Of its way: a gap that leaves its linear change by more has passed a kink, not a curve.
-  double kink = 0.1;
+  double kink = 0.4;
   double touching = 1e-6;      ///< m: a part of a segment as near as this touches
   double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone
   double end_apart = 0.25;  ///< of a group's length: an end that is nearer to the closest place needs no row of its own

@@ -15,7 +15,7 @@ class NearPairs {
   NearPairs(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion)
       : blocks_(mover.block_tree),
         motion_(motion),
-        R_abs_(motion.R.cwiseAbs()),
+        R_abs_(motion.now.R.cwiseAbs()),
         are_few_(std::max({mover.block_tree.leaves.size(), base.face_tree.leaves.size(),
                            base.edge_tree.leaves.size()}) <= kFew) {}
 
@@ -37,7 +37,7 @@ class NearPairs {
   };
 
   [[nodiscard]] PlacedBox placed(const BoxTree::Node& box) const {
-    return {motion_.R * box.center + motion_.p, R_abs_ * box.half};
+    return {motion_.now.R * box.center + motion_.now.p, R_abs_ * box.half};
   }
   [[nodiscard]] bool are_near(const PlacedBox& block, const BoxTree::Node& entity) const {
     for (int i = 0; i < 3; ++i)  // most are apart along the first
@@ -48,7 +48,7 @@ class NearPairs {
   /// The box along the mover's axes around one of the base, mover's coordinates: of a tilted mover the box along the
   /// base's axes is much larger than its own.
   [[nodiscard]] PlacedBox seen_from_mover(const BoxTree::Node& box) const {
-    return {motion_.R.transpose() * (box.center - motion_.p), R_abs_.transpose() * box.half};
+    return {motion_.now.R.transpose() * (box.center - motion_.now.p), R_abs_.transpose() * box.half};
   }
 
   /// Of small bodies all that is near the other as a whole is compared with each other: a tree of a dozen items has
@@ -112,7 +112,7 @@ class NearPairs {
   static constexpr std::size_t kFew = 64;
   const BoxTree& blocks_;
   const RelativeMotion& motion_;
-  const Matrix3d R_abs_;  ///< of motion.R
+  const Matrix3d R_abs_;  ///< of motion.now.R
   const bool are_few_;
   std::array<PlacedBox, kFew> boxes_;  ///< of the leaves, if they are few; else of the first nodes
   std::uint64_t is_placed_ = 0;        ///< a bit for each of these

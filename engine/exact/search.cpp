@@ -262,7 +262,8 @@ void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, s
     c.sample = best.group + static_cast<std::uint32_t>(i);
     c.place = place_at(placed.is_arc(), pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], side * half);
     if (!evaluate_candidate(placed, face, 1, c)) continue;
-    if (is_coincident(c.gap_ahead, (c.p - best.p).norm())) add_face_row(placed, c, 1, face);
+    if (is_coincident(c.gap_ahead, (c.p - best.p).norm()))
+      add_row(placed, c, 1, face, curving(pair_, placed, c, pair_.base.faces[face], 0));
     return;
   }
 }
@@ -279,7 +280,7 @@ double Search::touching_fraction(const PlacedFeature& placed, const Candidate& c
 
 /// Back-face culling: true if a plane's normal is outside of the normal cone of every sample of a block.
 bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) const {
-  const Vector3d n = pair_.motion.R.transpose() * normal;
+  const Vector3d n = pair_.motion.now.R.transpose() * normal;
   for (std::uint32_t i = block.begin; i < block.end; ++i)
     if (pair_.outside_normal_cone(i, n) < pair_.motion.thresholds.cone_none) return false;
   return true;
@@ -287,7 +288,7 @@ bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) co
 
 /// Adds the row of a candidate that touches the face's surface, not a plane beside it.
 void Search::add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
-  add_row(placed, c, count, face, curving(pair_, placed, c, *pair_.base.faces[face].surface));
+  add_row(placed, c, count, face, curving(pair_, placed, c, pair_.base.faces[face], count));
 }
 
 /// Adds the row of a candidate that stands for `count` segments.

@@ -6,13 +6,20 @@
 
 namespace verisim::exact {
 
+/// Where the mover is, base coordinates.
+struct Placement {
+  Matrix3d R;  ///< mover's coordinates to the base's
+  Vector3d p;  ///< m, mover's origin
+};
+
 /// Pose and motion of the mover relative to the base, base coordinates.
 struct RelativeMotion {
-  Matrix3d R;        ///< mover's coordinates to the base's
-  Vector3d p;        ///< m, mover's origin
+  Placement now;     ///< at the start of the step
   Twist free_twist;  ///< of the mover's material against the base, at the base's origin, without contact
   Twist last_twist;  ///< likewise, in the last step
   Twist during;      ///< likewise, with which it is taken to move in this step: BodyMotion::during
+  Placement ahead;   ///< after the step with free_twist
+  Placement after;   ///< after the step with `during`
   Matrix3d R_WB;     ///< base to world
   Vector3d p_WB;     ///< m
   double dt;         ///< s
@@ -22,6 +29,13 @@ struct RelativeMotion {
   bool mover_is_second;
   SearchThresholds thresholds;
 };
+
+/// The bodies at rest, one of them placed elsewhere.
+[[nodiscard]] inline RelativeMotion still(RelativeMotion motion, const Placement& placed) {
+  motion.now = placed;
+  motion.free_twist = motion.last_twist = motion.during = {};
+  return motion;
+}
 
 /// Working memory of a search: pairs of tree nodes yet to be visited.
 using NodePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;

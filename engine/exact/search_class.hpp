@@ -16,7 +16,12 @@ inline constexpr double kSlack = 1e-9;  // m: more than double precision says of
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
-      : pair_{mover, base, motion}, near_(mover, base, motion), rows_(rows), cost_(cost) {}
+      : pair_{mover, base, motion},
+        still_ahead_(still(motion, motion.ahead)),
+        pair_ahead_{mover, base, still_ahead_},
+        near_(mover, base, motion),
+        rows_(rows),
+        cost_(cost) {}
 
   double run(NodePairs& stack);
 
@@ -24,9 +29,10 @@ class Search {
   [[nodiscard]] const PlacedFeature& placed_feature(const SampleBlock& block);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
-  void cross_block(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature* now, std::uint32_t block,
-                   std::uint32_t edge);
-  [[nodiscard]] bool slopes_turn(const PlacedFeature& placed, const ExactEdge& edge) const;
+  void cross_block(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block, std::uint32_t edge);
+  [[nodiscard]] bool cross_segment(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
+                                   std::uint32_t count, Candidate& c);
+  [[nodiscard]] bool may_turn(const PlacedFeature& placed, const Measure& a, const Measure& b) const;
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
   [[nodiscard]] bool is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
                                       double way) const;
@@ -58,20 +64,20 @@ class Search {
                double curving);
 
   const BodyPair pair_;
+  const RelativeMotion still_ahead_;  ///< no motion, where the bodies are after the step without contact
+  const BodyPair pair_ahead_;
   NearPairs near_;
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
-  PlacedFeature placed_{};  ///< of the block that was tested last
+  PlacedFeature placed_{};  ///< of the block that is tested
 };
 
 /// The feature of a block in the coordinates of the base. Blocks are tested one after the other, each against several
 /// entities.
 inline const PlacedFeature& Search::placed_feature(const SampleBlock& block) {
   const Feature& feature = pair_.mover.features[block.feature];
-  const RelativeMotion& motion = pair_.motion;
-  if (placed_.feature != &feature)
-    placed_ = {&feature, motion.R * feature.origin + motion.p, motion.R * feature.x, motion.R * feature.y};
+  if (placed_.feature != &feature) placed_ = placed_by(pair_.motion.now, feature);
   return placed_;
 }
 

@@ -5,58 +5,57 @@
 
 namespace verisim::exact {
 
+namespace {
+
+bool is_of_lines(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge) {
+  const auto is_plane = [&](std::uint32_t face) { return pair.base.faces[face].surface->kind() == SurfaceKind::plane; };
+  return !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
+}
+
+/// True if a straight feature leaves both planes of an edge in the same direction, but not after the step.
+bool slopes_turn(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& ahead, const ExactEdge& edge) {
+  const Vector3d& a = pair.base.faces[edge.faces[0]].surface->axis();
+  const Vector3d& b = pair.base.faces[edge.faces[1]].surface->axis();
+  return a.dot(placed.x) * b.dot(placed.x) >= 0 && a.dot(ahead.x) * b.dot(ahead.x) < 0;
+}
+
+}  // namespace
+
+/// A straight edge that slopes the same way from both faces of an edge crosses none, but may do so after the step.
 void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const SampleBlock& block = pair_.mover.blocks[r];
   const Feature& feature = pair_.mover.features[block.feature];
   if (feature.own_face != kNoFace || feature.half_width == 0) return;
   const ExactEdge& edge = pair_.base.edges[e];
   const PlacedFeature& placed = placed_feature(block);
-  if (may_cross_edge(pair_, placed, edge)) return cross_block(pair_, placed, nullptr, r, e);
-  if (!slopes_turn(placed, edge)) return;
-  // A straight edge that slopes the same way from both faces crosses none, but will do so after the step.
-  const RelativeMotion& motion = pair_.motion;
-  const PlacedFeature ahead{&feature, placed.origin + pair_.moved(placed.origin, motion.free_twist), turned(placed.x),
-                            placed.y};
-  RelativeMotion still = motion;
-  still.free_twist = still.last_twist = {};
-  const BodyPair pair_ahead{pair_.mover, pair_.base, still};
-  if (may_cross_edge(pair_ahead, ahead, edge)) cross_block(pair_ahead, ahead, &placed, r, e);
-}
-
-/// True if a straight feature leaves both faces of an edge of two planes in the same direction, but not after the step.
-bool Search::slopes_turn(const PlacedFeature& placed, const ExactEdge& edge) const {
-  const Vector3d& a = pair_.base.faces[edge.faces[0]].surface->axis();
-  const Vector3d& b = pair_.base.faces[edge.faces[1]].surface->axis();
-  const Vector3d after = turned(placed.x);
-  return a.dot(placed.x) * b.dot(placed.x) >= 0 && a.dot(after) * b.dot(after) < 0;
+  if (!is_of_lines(pair_, placed, edge) || may_cross_edge(pair_, placed, edge))
+    return cross_block(pair_, placed, block, e);
+  const PlacedFeature ahead = placed_by(pair_.motion.ahead, feature);
+  if (slopes_turn(pair_, placed, ahead, edge) && may_cross_edge(pair_ahead_, ahead, edge))
+    cross_block(pair_ahead_, ahead, block, e);
 }
 
 /// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step
 /// without contact.
-/// @param pair    with the motion from `placed` on
-/// @param placed  where the mover's curve is, or after the step
-/// @param now     where it is now, if the crossing is that after the step; else null
-void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature* now, std::uint32_t r,
-                         std::uint32_t e) {
-  const RelativeMotion& motion = pair.motion;
-  const SampleBlock& block = pair.mover.blocks[r];
-  const Feature& feature = pair.mover.features[block.feature];
+/// @param pair  as they are, or pair_ahead_  @param placed  the mover's curve in it
+void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block, std::uint32_t e) {
+  const Feature& feature = *placed.feature;
   const ExactEdge& edge = pair.base.edges[e];
-  const bool is_straight = !placed.is_arc() && is_plane(edge.faces[0]) && is_plane(edge.faces[1]);
-  const double way = is_straight ? longest_way(placed, block) : kOutOfReach;
-  if (is_straight && is_led_all_along(placed, block, edge, way)) return;
+  const bool of_lines = is_of_lines(pair, placed, edge);
+  const double way = of_lines ? longest_way(placed, block) : kOutOfReach;
+  if (of_lines && is_led_all_along(placed, block, edge, way)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
   for (std::size_t side = 0; side < 2; ++side) {
     const AnalyticSurface& surface = *pair.base.faces[edge.faces[side]].surface;
-    if (is_straight) {
+    if (of_lines) {
       const double distance = (placed.origin - surface.point()).dot(surface.axis());
       const double slope = placed.x.dot(surface.axis());
       const double* t = &pair.mover.sample_c[block.begin];
       for (std::uint32_t i = 0; i < count; ++i) measures[side][i] = {distance + t[i] * slope, slope, 0, 0};
       continue;
     }
-    pair.measure_all(pair.seen_from(surface, placed, motion.free_twist), block,
+    pair.measure_all(pair.seen_from(surface, placed, pair.motion.free_twist), block,
                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
   }
   cost_.samples += 2 * count;
@@ -69,25 +68,49 @@ void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, cons
       Candidate c;
       c.group = block.begin + begin;
       c.sample = block.begin + i;
-      const auto near = [&](std::size_t side) {
-        return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, c.sample);
-      };
-      cost_.closest_places += 2;
-      if (!cross_edge(pair, placed, edge, {near(0), near(1)}, c)) continue;
-      if (now != nullptr) {
-        const Vector3d here = now->point(c.place);
-        c.gap -= c.normal.dot(c.p - here);
-        c.p = here;
-      }
-      if (!is_near(placed, size, c)) continue;
-      c.weight *= pair.edge_cone_weight(c.sample, c.normal);
-      if (c.weight > 0 && now == nullptr) depth_max_ = std::max(depth_max_, -c.at.distance);
-      if (c.gap_ahead < best.gap_ahead) best = c;
+      const bool crosses = cross_segment(pair, placed, edge, size, c) ||
+                           (!of_lines && may_turn(placed, measures[0][i], measures[1][i]) &&
+                            cross_segment(pair_ahead_, placed_by(pair_.motion.ahead, feature), edge, size, c));
+      if (crosses && c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)
       add_row(placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e,
-              now != nullptr ? 0 : curving_of_edges(pair, placed, best, edge));
+              best.comes_down ? 0 : curving_of_edges(pair_, placed, best, edge));
   }
+}
+
+/// The crossing of a candidate's segment with an edge. That after the step is looked at from where it is now: its gap
+/// is such that the motion without contact leads to it. @param pair  as in cross_block()  @returns whether there is one
+bool Search::cross_segment(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
+                           std::uint32_t count, Candidate& c) {
+  const auto near = [&](std::size_t side) {
+    return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, c.sample);
+  };
+  cost_.closest_places += 2;
+  if (!cross_edge(pair, placed, edge, {near(0), near(1)}, c)) return false;
+  c.comes_down = &pair == &pair_ahead_;
+  if (c.comes_down) {
+    c.p = placed_.point(c.place);
+    c.gap -= c.normal.dot(pair_.moved(c.p, pair_.motion.free_twist));
+    if (!(c.gap > pair.motion.thresholds.coincident)) return false;  // what lies is held by what it lies on
+  }
+  if (!is_near(placed_, count, c)) return false;
+  c.weight *= pair.edge_cone_weight(c.sample, c.normal);
+  if (c.weight > 0 && !c.comes_down) depth_max_ = std::max(depth_max_, -c.at.distance);
+  return true;
+}
+
+/// May a segment that slopes the same way from two faces slope otherwise after the step? Of its middle's slopes: its
+/// tangent turns, and the faces do below it.
+bool Search::may_turn(const PlacedFeature& placed, const Measure& a, const Measure& b) const {
+  const double length = placed.x.norm();  // of the tangent, all along
+  const double half = placed.feature->half_width;
+  const double turn = pair_.motion.dt * pair_.motion.free_twist.angular.norm();
+  const double way = pair_.moved(placed.origin, pair_.motion.free_twist).norm() + turn * length;
+  const auto turns = [&](const Measure& m) {
+    return std::abs(m.slope) < length * turn + std::abs(m.bend) * (half + way / length);
+  };
+  return turns(a) || turns(b);
 }
 
 /// True if may_cross() would be false of all segments of a straight block: one of two planes leads at both of its ends,

@@ -21,8 +21,8 @@ void look_in_full(const ExactBody& mover, const ExactBody& base, const RelativeM
   const BodyPair pair{mover, base, motion};
   for (const Feature& feature : mover.features) {
     if (feature.kind != Feature::Kind::line || feature.own_face != kNoFace) continue;
-    const PlacedFeature placed{&feature, motion.R * feature.origin + motion.p, motion.R * feature.x,
-                               motion.R * feature.y};
+    const PlacedFeature placed{&feature, motion.now.R * feature.origin + motion.now.p, motion.now.R * feature.x,
+                               motion.now.R * feature.y};
     for (const ExactEdge& edge : base.edges) {
       if (edge.convexity != Convexity::convex) continue;
       const bool may_cross = may_cross_edge(pair, placed, edge);
@@ -51,8 +51,8 @@ TEST(EdgeCrossing, NoneWhereTheSearchPassesOver) {
     for (std::uint64_t seed = 0; seed < poses; ++seed) {
       Draw draw(seed);
       RelativeMotion motion{};
-      motion.R = (seed % 8 == 0 ? Quaterniond::Identity() : draw.rotation()).toRotationMatrix();
-      motion.p = draw.in_box({0.03, 0.03, 0.03});
+      motion.now.R = (seed % 8 == 0 ? Quaterniond::Identity() : draw.rotation()).toRotationMatrix();
+      motion.now.p = draw.in_box({0.03, 0.03, 0.03});
       motion.free_twist = {draw.in_box({1, 1, 1}), draw.in_box({9, 9, 9})};
       motion.last_twist = {draw.in_box({1, 1, 1}), draw.in_box({9, 9, 9})};
       motion.dt = 0.001;
