@@ -154,7 +154,7 @@ struct DropScene {
 };
 
 /// Of even seeds the body falls, at up to 1 m/s when it begins; of odd ones a hand presses it down, held any way up.
-inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed) {
+inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed, double dt = 0.001) {
   const RandomStream random(seed, "drop");
   const auto between = [&](std::uint64_t k, double low, double high) { return low + (high - low) * random.uniform(k); };
   DropScene result;
@@ -162,6 +162,7 @@ inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed
   Scene& scene = result.scene;
   scene.parameters.hybrid = hybrid::exact;
   scene.parameters.integrator = Integrator::implicit;
+  scene.parameters.timestep = dt;
   scene.parameters.all_bodies_are_dynamic = true;
   scene.parameters.gravity = {0, 0, -9.81};
   scene.parameters.max_stiffness = 1000;
