@@ -62,7 +62,7 @@ double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidat
   const Feature& feature = *placed.feature;
   const Vector3d way = pair.moved(c.p, motion.during);
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  const PlacedFeature after = placed_by(motion.after, feature);
+  const PlacedFeature after = placed_by(motion.after(), feature);
   if (!placed.is_arc() && face.surface->kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
     return curving_along(pair, way, face.surface->axis().dot(after.point(c.place) - c.p - way));
   return curving_along(pair, way, closest_gap(pair, after, c, face, count) - c.gap - c.at.normal.dot(way));
@@ -72,9 +72,9 @@ double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const
   const RelativeMotion& motion = pair.motion;
   const Vector3d way = pair.moved(c.p, motion.during);
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  const PlacedFeature after = placed_by(motion.after, *placed.feature);
+  const PlacedFeature after = placed_by(motion.after(), *placed.feature);
   if (!placed.is_arc() && edge.extent == ExactEdge::Extent::line) return curving_of_lines(pair, placed, after, c, edge);
-  const RelativeMotion no_motion = still(motion, motion.after);
+  const RelativeMotion no_motion = still(motion, motion.after());
   const BodyPair there{pair.mover, pair.base, no_motion};
   const auto near = [&](std::size_t side) {
     return closest_place_to(there, *pair.base.faces[edge.faces[side]].surface, after, c.sample);

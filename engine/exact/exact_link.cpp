@@ -13,10 +13,6 @@ Vector3d velocity_at(const BodyMotion& body, const Twist& twist, const Vector3d&
   return twist.linear + twist.angular.cross(p_W - body.p_WC);
 }
 
-Twist during(const BodyMotion& body) {
-  return body.during.value_or(body.last_twist);
-}
-
 /// Where a body is after a step: its centre of mass goes straight on, and the body turns about it.
 Pose after(const BodyMotion& body, const Twist& twist, double dt) {
   const Quaterniond turn = rotation_from_vector(dt * twist.angular);
@@ -40,9 +36,7 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   };
   motion.free_twist = against(mover.twist, base.twist);
   motion.last_twist = against(mover.last_twist, base.last_twist);
-  motion.during = against(during(mover), during(base));
-  motion.ahead = placement(after(mover, mover.twist, dt), after(base, base.twist, dt));
-  motion.after = placement(after(mover, during(mover), dt), after(base, during(base), dt));
+  motion.during = against(mover.taken(), base.taken());
   motion.R_WB = base.X_WB.rotation.toRotationMatrix();
   motion.p_WB = base.X_WB.position;
   motion.dt = dt;
@@ -51,16 +45,24 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   motion.overlap = overlap;
   motion.mover_is_second = mover_is_second;
   motion.thresholds = thresholds;
+  motion.of_mover = &mover;
+  motion.of_base = &base;
   return motion;
 }
 
 bool is_finite(const BodyMotion& body) {
   return std::isfinite(body.X_WB.position.sum() + body.X_WB.rotation.coeffs().sum() + body.twist.linear.sum() +
                        body.twist.angular.sum() + body.last_twist.linear.sum() + body.last_twist.angular.sum() +
-                       during(body).linear.sum() + during(body).angular.sum());
+                       body.taken().linear.sum() + body.taken().angular.sum());
 }
 
 }  // namespace
+
+const Placement& RelativeMotion::placed_once(std::optional<Placement>& placement, const Twist& mover,
+                                             const Twist& base) const {
+  if (!placement) placement = exact::placement(exact::after(*of_mover, mover, dt), exact::after(*of_base, base, dt));
+  return *placement;
+}
 
 ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
                      std::size_t rows_max, const SearchThresholds& thresholds)

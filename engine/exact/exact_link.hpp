@@ -62,6 +62,7 @@ struct BodyMotion {
   Twist twist;                       ///< of the centre of mass, without contact
   Twist last_twist = {};             ///< likewise, at the end of the last step, contacts included
   std::optional<Twist> during = {};  ///< likewise, that of the step, if known: what curves is of it; else of last_twist
+  [[nodiscard]] const Twist& taken() const { return during ? *during : last_twist; }
 };
 
 /// Thresholds of the search. Heuristic: chosen so that rows fade in and out instead of jumping. exact_thresholds_test

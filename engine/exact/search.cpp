@@ -120,7 +120,8 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     (void)evaluate_segment(placed, curve, count, face, c);  // counts its depth
   }
   add_face_row(placed, best, count, face);
-  if (placed.feature->own_face != kNoFace) add_conforming(placed, best, count, face);
+  const bool is_corner = placed.feature->half_width == 0;
+  if (placed.feature->own_face != kNoFace || is_corner) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
     add_face_row(placed, strongest, count, face);
@@ -221,7 +222,8 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   return passes < motion.thresholds.conforms && std::abs(here.slope) / length > tilts;
 }
 
-/// Adds the rows of a ball that may come to other places of a hollow within the step (conforming_normals.hpp).
+/// Adds the rows of a ball or a corner that may come to other places of a hollow within the step
+/// (conforming_normals.hpp).
 void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count,
                             std::uint32_t face) {
   const RelativeMotion& motion = pair_.motion;
@@ -234,7 +236,10 @@ void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, 
     c.normal = around.normals[i];
     c.at = {best.at.distance + (c.normal - best.normal).dot(best.p - around.pivot), c.normal};
     c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
-    if (c.gap < motion.margin && accept_candidate(pair_, placed, face, c)) add_row(placed, c, count, face, 0);
+    c.weight = 1;
+    if (!(c.gap < motion.margin) || !accept_candidate(pair_, placed, face, c)) continue;
+    if (placed.feature->own_face == kNoFace) c.weight *= pair_.normal_cone_weight(c.sample, c.normal);
+    add_row(placed, c, count, face, 0);
   }
 }
 

@@ -2,6 +2,8 @@
 // the coordinates of the base. exact_link.hpp describes the method. Private to this folder.
 #pragma once
 
+#include <optional>
+
 #include "engine/exact/exact_link.hpp"
 
 namespace verisim::exact {
@@ -18,8 +20,6 @@ struct RelativeMotion {
   Twist free_twist;  ///< of the mover's material against the base, at the base's origin, without contact
   Twist last_twist;  ///< likewise, in the last step
   Twist during;      ///< likewise, with which it is taken to move in this step: BodyMotion::during
-  Placement ahead;   ///< after the step with free_twist
-  Placement after;   ///< after the step with `during`
   Matrix3d R_WB;     ///< base to world
   Vector3d p_WB;     ///< m
   double dt;         ///< s
@@ -28,10 +28,20 @@ struct RelativeMotion {
   double overlap;    ///< m, of the two bodies in the last step
   bool mover_is_second;
   SearchThresholds thresholds;
+  const BodyMotion* of_mover;
+  const BodyMotion* of_base;
+
+  /// Where the mover is after the step with free_twist, and with `during`. Few pairs ask, some often.
+  [[nodiscard]] const Placement& ahead() const { return placed_once(ahead_, of_mover->twist, of_base->twist); }
+  [[nodiscard]] const Placement& after() const { return placed_once(after_, of_mover->taken(), of_base->taken()); }
+
+ private:
+  const Placement& placed_once(std::optional<Placement>& placement, const Twist& mover, const Twist& base) const;
+  mutable std::optional<Placement> ahead_, after_;
 };
 
 /// The bodies at rest, one of them placed elsewhere.
-[[nodiscard]] inline RelativeMotion still(RelativeMotion motion, const Placement& placed) {
+[[nodiscard]] inline RelativeMotion still(RelativeMotion motion, const Placement placed) {
   motion.now = placed;
   motion.free_twist = motion.last_twist = motion.during = {};
   return motion;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "engine/exact/candidate.hpp"
@@ -17,8 +18,8 @@ class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
       : pair_{mover, base, motion},
-        still_ahead_(still(motion, motion.ahead)),
-        pair_ahead_{mover, base, still_ahead_},
+        is_found_again_(motion.during.linear != motion.last_twist.linear ||
+                        motion.during.angular != motion.last_twist.angular),
         near_(mover, base, motion),
         rows_(rows),
         cost_(cost) {}
@@ -29,10 +30,11 @@ class Search {
   [[nodiscard]] const PlacedFeature& placed_feature(const SampleBlock& block);
   void test_block(std::uint32_t block, std::uint32_t face);
   void cross_block(std::uint32_t block, std::uint32_t edge);
-  void cross_block(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block, std::uint32_t edge);
-  [[nodiscard]] bool cross_segment(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
-                                   std::uint32_t count, Candidate& c);
-  [[nodiscard]] bool may_turn(const PlacedFeature& placed, const Measure& a, const Measure& b) const;
+  /// Where edges are looked at: as they are, and after the step with RelativeMotion::free_twist and `during`.
+  enum class When : std::uint8_t { now, ahead, after };
+  [[nodiscard]] BodyPair pair_at(When when);
+  void cross_block(When when, const PlacedFeature& placed, const SampleBlock& block, std::uint32_t edge);
+  [[nodiscard]] bool cross_segment(When when, const ExactEdge& edge, std::uint32_t count, Candidate& c);
   [[nodiscard]] bool may_cross(const Feature& feature, const Measure& a, const Measure& b, double way) const;
   [[nodiscard]] bool is_led_all_along(const PlacedFeature& placed, const SampleBlock& block, const ExactEdge& edge,
                                       double way) const;
@@ -64,8 +66,8 @@ class Search {
                double curving);
 
   const BodyPair pair_;
-  const RelativeMotion still_ahead_;  ///< no motion, where the bodies are after the step without contact
-  const BodyPair pair_ahead_;
+  std::optional<RelativeMotion> still_ahead_, still_after_;  ///< of pair_at(), when first asked for
+  const bool is_found_again_;                                ///< for another motion than that of the last step
   NearPairs near_;
   RowList& rows_;
   SearchCost& cost_;

@@ -21,6 +21,15 @@ bool slopes_turn(const BodyPair& pair, const PlacedFeature& placed, const Placed
 
 }  // namespace
 
+BodyPair Search::pair_at(When when) {
+  const RelativeMotion& motion = pair_.motion;
+  if (when == When::now) return pair_;
+  const bool is_ahead = when == When::ahead;
+  std::optional<RelativeMotion>& there = is_ahead ? still_ahead_ : still_after_;
+  if (!there) there = still(motion, is_ahead ? motion.ahead() : motion.after());
+  return {pair_.mover, pair_.base, *there};
+}
+
 /// A straight edge that slopes the same way from both faces of an edge crosses none, but may do so after the step.
 void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const SampleBlock& block = pair_.mover.blocks[r];
@@ -29,16 +38,16 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const ExactEdge& edge = pair_.base.edges[e];
   const PlacedFeature& placed = placed_feature(block);
   if (!is_of_lines(pair_, placed, edge) || may_cross_edge(pair_, placed, edge))
-    return cross_block(pair_, placed, block, e);
-  const PlacedFeature ahead = placed_by(pair_.motion.ahead, feature);
-  if (slopes_turn(pair_, placed, ahead, edge) && may_cross_edge(pair_ahead_, ahead, edge))
-    cross_block(pair_ahead_, ahead, block, e);
+    return cross_block(When::now, placed, block, e);
+  const PlacedFeature ahead = placed_by(pair_.motion.ahead(), feature);
+  if (slopes_turn(pair_, placed, ahead, edge) && may_cross_edge(pair_at(When::ahead), ahead, edge))
+    cross_block(When::ahead, ahead, block, e);
 }
 
 /// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step
-/// without contact.
-/// @param pair  as they are, or pair_ahead_  @param placed  the mover's curve in it
-void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block, std::uint32_t e) {
+/// without contact. @param placed  the mover's curve then
+void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlock& block, std::uint32_t e) {
+  const BodyPair pair = pair_at(when);
   const Feature& feature = *placed.feature;
   const ExactEdge& edge = pair.base.edges[e];
   const bool of_lines = is_of_lines(pair, placed, edge);
@@ -59,6 +68,7 @@ void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, cons
                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
   }
   cost_.samples += 2 * count;
+  const bool moves = when == When::now && longest_way(placed, block) > pair.motion.thresholds.slow;
   for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - begin);
     Candidate best;
@@ -68,9 +78,9 @@ void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, cons
       Candidate c;
       c.group = block.begin + begin;
       c.sample = block.begin + i;
-      const bool crosses = cross_segment(pair, placed, edge, size, c) ||
-                           (!of_lines && may_turn(placed, measures[0][i], measures[1][i]) &&
-                            cross_segment(pair_ahead_, placed_by(pair_.motion.ahead, feature), edge, size, c));
+      const bool crosses = cross_segment(when, edge, size, c) ||
+                           (moves && (cross_segment(When::ahead, edge, size, c) ||
+                                      (is_found_again_ && cross_segment(When::after, edge, size, c))));
       if (crosses && c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)
@@ -80,37 +90,26 @@ void Search::cross_block(const BodyPair& pair, const PlacedFeature& placed, cons
 }
 
 /// The crossing of a candidate's segment with an edge. That after the step is looked at from where it is now: its gap
-/// is such that the motion without contact leads to it. @param pair  as in cross_block()  @returns whether there is one
-bool Search::cross_segment(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
-                           std::uint32_t count, Candidate& c) {
+/// is such that the motion which is assumed leads to it. @returns whether there is one
+bool Search::cross_segment(When when, const ExactEdge& edge, std::uint32_t count, Candidate& c) {
+  const BodyPair pair = pair_at(when);
+  const PlacedFeature placed = when == When::now ? placed_ : placed_by(pair.motion.now, *placed_.feature);
   const auto near = [&](std::size_t side) {
     return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, c.sample);
   };
   cost_.closest_places += 2;
   if (!cross_edge(pair, placed, edge, {near(0), near(1)}, c)) return false;
-  c.comes_down = &pair == &pair_ahead_;
+  c.comes_down = when != When::now;
   if (c.comes_down) {
+    const RelativeMotion& motion = pair_.motion;
     c.p = placed_.point(c.place);
-    c.gap -= c.normal.dot(pair_.moved(c.p, pair_.motion.free_twist));
-    if (!(c.gap > pair.motion.thresholds.coincident)) return false;  // what lies is held by what it lies on
+    c.gap -= c.normal.dot(pair_.moved(c.p, when == When::ahead ? motion.free_twist : motion.during));
+    if (!(c.gap > motion.thresholds.coincident)) return false;  // what lies is held by what it lies on
   }
   if (!is_near(placed_, count, c)) return false;
   c.weight *= pair.edge_cone_weight(c.sample, c.normal);
   if (c.weight > 0 && !c.comes_down) depth_max_ = std::max(depth_max_, -c.at.distance);
   return true;
-}
-
-/// May a segment that slopes the same way from two faces slope otherwise after the step? Of its middle's slopes: its
-/// tangent turns, and the faces do below it.
-bool Search::may_turn(const PlacedFeature& placed, const Measure& a, const Measure& b) const {
-  const double length = placed.x.norm();  // of the tangent, all along
-  const double half = placed.feature->half_width;
-  const double turn = pair_.motion.dt * pair_.motion.free_twist.angular.norm();
-  const double way = pair_.moved(placed.origin, pair_.motion.free_twist).norm() + turn * length;
-  const auto turns = [&](const Measure& m) {
-    return std::abs(m.slope) < length * turn + std::abs(m.bend) * (half + way / length);
-  };
-  return turns(a) || turns(b);
 }
 
 /// True if may_cross() would be false of all segments of a straight block: one of two planes leads at both of its ends,
@@ -144,9 +143,16 @@ bool Search::may_cross(const Feature& feature, const Measure& a, const Measure& 
   return !runs_along && lead < 2 * (change + motion.margin) && lead < change + 2 * way + kSlack;
 }
 
-/// Bound of the way of a straight block's places within a step [m], by either of the motions that the rules of
-/// ownership look at.
+/// Bound of the way of a block's places within a step [m], by either of the motions that the rules of ownership look
+/// at.
 double Search::longest_way(const PlacedFeature& placed, const SampleBlock& block) const {
+  if (placed.is_arc()) {
+    double way = 0;
+    for (const Twist* twist : {&pair_.motion.free_twist, &pair_.motion.last_twist})
+      way = std::max(
+          way, pair_.moved(placed.origin, *twist).norm() + pair_.motion.dt * twist->angular.norm() * placed.x.norm());
+    return way;
+  }
   const double first = pair_.mover.sample_c[block.begin] - placed.feature->half_width;
   const double last = pair_.mover.sample_c[block.end - 1] + placed.feature->half_width;
   double way = 0;  // it is convex along the block: the longest is that of an end
