@@ -223,24 +223,30 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
 }
 
 /// Adds the rows of a ball or a corner that may come to other places of a hollow within the step
-/// (conforming_normals.hpp).
+/// (conforming_normals.hpp), and of a corner where the motions that are assumed lead it.
 void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count,
                             std::uint32_t face) {
   const RelativeMotion& motion = pair_.motion;
-  const ConformingNormals around = conforming_normals(*pair_.base.faces[face].surface, best.p, best.at);
+  const AnalyticSurface& surface = *pair_.base.faces[face].surface;
+  const ConformingNormals around = conforming_normals(surface, best.p, best.at);
   const double slide =
       std::max(pair_.moved(best.p, motion.free_twist).norm(), pair_.moved(best.p, motion.last_twist).norm());
   if (!(slide > motion.thresholds.conforms * around.radius)) return;
-  for (std::size_t i = 0; i < around.count; ++i) {
+  const bool is_corner = placed.feature->own_face == kNoFace;
+  const auto add = [&](const Vector3d& normal) {
     Candidate c = best;
-    c.normal = around.normals[i];
+    c.normal = normal;
     c.at = {best.at.distance + (c.normal - best.normal).dot(best.p - around.pivot), c.normal};
     c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
     c.weight = 1;
-    if (!(c.gap < motion.margin) || !accept_candidate(pair_, placed, face, c)) continue;
-    if (placed.feature->own_face == kNoFace) c.weight *= pair_.normal_cone_weight(c.sample, c.normal);
+    if (!(c.gap < motion.margin) || !accept_candidate(pair_, placed, face, c)) return;
+    if (is_corner) c.weight *= pair_.normal_cone_weight(c.sample, c.normal);
     add_row(placed, c, count, face, 0);
-  }
+  };
+  for (std::size_t i = 0; i < around.count; ++i) add(around.normals[i]);
+  if (!is_corner || around.count == 0) return;
+  for (const Placement* there : {&motion.ahead(), &motion.after()})
+    add(surface.at(placed_by(*there, *placed.feature).point(best.place)).normal);
 }
 
 /// Adds a row for the end of a coincident group on the given side (-1 or 1). All places of such a group are about

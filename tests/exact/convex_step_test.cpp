@@ -215,6 +215,58 @@ TEST(ConvexStep, SolvesRowsAtOnePlaceAsTheirSum) {
   }
 }
 
+// What a row was told of curves may be wrong by any amount: it gives no energy. Told rightly it is all taken.
+TEST(ConvexStep, WhatCurvesGivesNoEnergy) {
+  constexpr double kSpeed = 1, kMass = 2;
+  for (const double told : {1e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 1e-2}) {
+    SCOPED_TRACE(told);
+    ContactRow row = row_at(Vector3d::UnitX(), Vector3d::Zero(), 0, 1e9);
+    row.curving = -told;
+    Vector6d u = Vector6d::Zero();
+    u.y() = kSpeed;
+    ConvexStep step(8);
+    const int body = step.add_body(Vector3d::Zero(), kMass * Matrix6d::Identity(), u, u);
+    step.add_rows(std::span(&row, 1), kFixed, body);
+    step.solve(kStep);
+    EXPECT_LE(step.velocity(body).squaredNorm(), 1.0101 * kSpeed * kSpeed);
+    if (told < 0.1 * kSpeed * kStep) {
+      EXPECT_NEAR(kStep * step.velocity(body).x(), told, 3e-3 * told);
+    }
+  }
+}
+
+// A body of 1e-9 kg lies on a box of 1 kg, which lies on a plate, each on four corners: it has next to no part in the
+// cost of the whole, and is held like any other.
+TEST(ConvexStep, BalancesWhatIsLightBesideWhatIsHeavy) {
+  constexpr double kGravity = 9.81;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    ConvexStep step(64);
+    Vector6d free = Vector6d::Zero();
+    free.z() = -kStep * kGravity;
+    const auto inertia = [](double mass) {
+      Matrix6d M = mass * Matrix6d::Identity();
+      M.bottomRightCorner<3, 3>() *= 1e-4;
+      return M;
+    };
+    const double light = std::pow(10.0, draw.between(-9, -6));
+    const int below = step.add_body({0, 0, 0.01}, inertia(1), free, Vector6d::Zero());
+    const int above = step.add_body({0, 0, 0.03}, inertia(light), free, Vector6d::Zero());
+    std::vector<ContactRow> of_below, of_above;
+    for (const double x : {-0.01, 0.01})
+      for (const double y : {-0.01, 0.01}) {
+        of_below.push_back(row_at(Vector3d::UnitZ(), {x, y, 0}, draw.between(-1e-9, 1e-9), 1e9));
+        of_above.push_back(row_at(Vector3d::UnitZ(), {0.7 * x, 0.7 * y, 0.02}, draw.between(-1e-12, 1e-12), 1e9));
+      }
+    step.add_rows(of_below, kFixed, below);
+    step.add_rows(of_above, below, above);
+    step.solve(kStep);
+    const double momentum = light * (step.velocity(above).z() - free.z());
+    EXPECT_NEAR(kStep * step.wrench(above).force.z(), momentum, 1e-7 * light * kStep * kGravity);
+  }
+}
+
 TEST(ConvexStep, LeavesOutRowsBeyondItsCapacityAndSaysSo) {
   Draw draw(1);
   ConvexStep step(10);

@@ -102,5 +102,66 @@ TEST(CurvedStep, OfATurningTubeStaysOnTheWall) {
   }
 }
 
+// A box beside a plane turns about its centre of mass, which is not its origin, and flies on. Each corner's row says
+// where that corner is after the step: on the straight line of its velocity, or below where it turns towards the plane.
+TEST(CurvedStep, OfABoxThatTurnsAndFliesEndsWhereItsRowsSay) {
+  Pair pair(make(Kind::box, {0.3, 0.3, 0.02}), make(Kind::box, {0.03, 0.02, 0.01}));
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const Pose X_WB{{0, 0, 0.01 + draw.between(0.019, 0.03)}, draw.rotation()};
+    const Vector3d center = X_WB * draw.in_box({0.01, 0.01, 0.01});
+    const Twist twist{draw.in_box({1, 1, 1}), draw.in_box({40, 40, 40})};
+    pair.link.find({}, {X_WB, center, twist, twist}, kStep, 0.05);
+    const Quaterniond turn = rotation_from_vector(kStep * twist.angular);
+    int corners = 0;
+    for (const ContactRow& row : pair.link.rows().rows()) {
+      const Vector3d corner = X_WB.inverse() * row.point;
+      if ((corner.cwiseAbs() - Vector3d(0.015, 0.01, 0.005)).cwiseAbs().maxCoeff() > 1e-9) continue;
+      if ((row.normal - Vector3d::UnitZ()).norm() > 1e-9) continue;
+      const Vector3d arm = row.point - center;
+      const double straight = row.gap + kStep * (twist.linear + twist.angular.cross(arm)).z();
+      const double after = (center + kStep * twist.linear + turn * arm).z() - 0.01;
+      EXPECT_NEAR(straight + row.curving, std::min(straight, after), kRounding);
+      ++corners;
+    }
+    EXPECT_GT(corners, 0);
+  }
+}
+
+// The tip of a cone slides down in a conical hole and across its axis, where the wall's other side is next: no step
+// takes it through. It knows the wall by tangent planes, which leave some hundredths of the hollow: 20 um.
+TEST(CurvedStep, OfATipAcrossTheAxisOfAHoleIsStoppedByItsOtherSide) {
+  const Solid hole = combine(Solid::Kind::difference, make(Kind::box, {0.04, 0.04, 0.02}),
+                             placed(make(Kind::cone, {0, 0.006, 0.006}), {{0, 0, 0.007}, Quaterniond::Identity()}));
+  Pair pair(hole, make(Kind::cone, {0, 0.002, 0.006}), 0.001);
+  constexpr double kBottom = 0.004;  // m, height of the hole's apex
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const double beside = draw.between(5e-5, 3e-4), height = kBottom + beside + 1e-6;
+    Vector3d p(beside, 0, height + 0.003);  // the cone's middle
+    Vector6d u = Vector6d::Zero();
+    u.x() = draw.between(-0.5, -0.2);
+    u.y() = draw.between(-0.1, 0.1);
+    u.z() = u.x();
+    for (int i = 0; i < 10; ++i) {
+      pair.link.find(
+          {}, {{p, Quaterniond::Identity()}, p, {u.head<3>(), Vector3d::Zero()}, {u.head<3>(), Vector3d::Zero()}},
+          kStep, 2e-3);
+      Matrix6d M = 0.1 * Matrix6d::Identity();
+      M.bottomRightCorner<3, 3>() *= 1e9;  // it does not turn
+      ConvexStep solver(4096);
+      const int cone = solver.add_body(p, M, u, u);
+      solver.add_rows(pair.link.rows().rows(), kFixed, cone);
+      solver.solve(kStep);
+      u = solver.velocity(cone);
+      p += kStep * u.head<3>();
+      const Vector3d tip = p - Vector3d(0, 0, 0.003);
+      EXPECT_GE((tip.z() - kBottom - tip.head<2>().norm()) * std::sqrt(0.5), -2e-5) << "step " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace verisim::exact::test::curved_step_test
