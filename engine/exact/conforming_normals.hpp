@@ -1,9 +1,9 @@
-// The directions in which a ball that fits closely into a hollow may be stopped by it. The ball's centre stays within
-// the hollow shrunk by the ball's radius. Where the centre can pass much of that within a step, because the ball is
-// hardly smaller than the hollow, or because it lies in a cone and its centre is on the axis, one tangent plane says
-// little of it. The hollow is convex (round a cylinder's, cone's or ball's inside; across a torus's tube), so its other
-// tangent planes hold as well: none stops the ball where the hollow does not. Base coordinates [m]. Private to this
-// folder.
+// The directions in which a ball, or a corner as a ball without a radius, that fits closely into a hollow may be
+// stopped by it. The ball's centre stays within the hollow shrunk by the ball's radius. Where the centre can pass much
+// of that within a step, because the ball is hardly smaller than the hollow, or because it lies in a cone and its
+// centre is on the axis, one tangent plane says little of it. The hollow is convex (round a cylinder's, cone's or
+// ball's inside; across a torus's tube), so its other tangent planes hold as well: none stops the ball where the hollow
+// does not. Base coordinates [m]. Private to this folder.
 #pragma once
 
 #include <array>

@@ -38,6 +38,11 @@
 // the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give: it
 // moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
 //
+// Curves. What a row is told of them (ContactRow::curving) may be wrong: it is a guess of the motion. Where the
+// contacts would do more work than the springs held, by more than 1 % of the kinetic energy, all rows take a smaller
+// share of it. Light bodies. One of 1e-9 kg has next to no part in the cost of what lies beside it. Where the cost has
+// converged to its rounding the iterations go on until the impulses on each body balance, a few times.
+//
 // World coordinates; a velocity is (v, omega) of the centre of mass. SI units. No allocation after the constructor but
 // in reserve and reserve_blocks. Sums are taken in the order in which rows were added.
 #pragma once

@@ -23,6 +23,9 @@
 //   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
 //                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
 //                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.
+//   After the step  Edges that do not cross now may do so after the step: one slopes the same way from both faces of
+//                   the other, or is beside both. Then the crossing is looked for where the motion without contact
+//                   ends, and where the assumed one does. Its row has the gap from which that motion leads to it.
 //   Culling         On coincident faces most samples are owned by another face or see the face from behind. Such
 //                   samples are rejected a block at a time (ownership_culling.hpp).
 //   Reduction       A group of segments has one row, at its closest place at the end of the step. A coincident group
@@ -30,7 +33,7 @@
 //                   weight has a row too.
 //   Hollows         A rim that slides round within a hollow has the row of its closest place alone: one beside it would
 //                   brake. Where the hollow is hardly wider, the closest place passes much of it within a step: all of
-//                   the rim's groups have rows, and a ball has rows all round (conforming_normals.hpp).
+//                   the rim's groups have rows, and a ball or a corner has rows all round (conforming_normals.hpp).
 //   Own face        A ball that a curve carries touches only where the curve is closest; within the step that may be
 //                   another place than now.
 //   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25
@@ -43,8 +46,8 @@
 // contacts are found again for the motion that it gave (simulation/stages/exact_response.cpp). What is left is of third
 // order. Where two rims of nearly the same radius cross, the crossing point is faster than either body. For that there
 // is no formula: in scenarios/pins.lua light plates that fall over a hole's rim at 0.1 to 2 m/s overlapped by up to 7
-// um. A straight edge may come down with another end than is nearest now, or on an edge that it does not cross now:
-// both are looked for as the free motion turns it.
+// um. A straight edge that comes down on a plane with another end than is nearest now is looked at as the free motion
+// turns it.
 #pragma once
 
 #include <memory>

@@ -28,8 +28,8 @@ struct RelativeMotion {
   double overlap;    ///< m, of the two bodies in the last step
   bool mover_is_second;
   SearchThresholds thresholds;
-  const BodyMotion* of_mover;
-  const BodyMotion* of_base;
+  const BodyMotion* of_mover = nullptr;  ///< of the call of find() that it is of
+  const BodyMotion* of_base = nullptr;
 
   /// Where the mover is after the step with free_twist, and with `during`. Few pairs ask, some often.
   [[nodiscard]] const Placement& ahead() const { return placed_once(ahead_, of_mover->twist, of_base->twist); }
