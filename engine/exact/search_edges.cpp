@@ -4,7 +4,6 @@
 #include "engine/exact/search_class.hpp"
 
 namespace verisim::exact {
-
 namespace {
 
 bool is_of_lines(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge) {
@@ -51,7 +50,8 @@ void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlo
   const Feature& feature = *placed.feature;
   const ExactEdge& edge = pair.base.edges[e];
   const bool of_lines = is_of_lines(pair, placed, edge);
-  const double way = of_lines ? longest_way(placed, block) : kOutOfReach;
+  const double longest = longest_way(placed, block);
+  const double way = of_lines ? longest : kOutOfReach;
   if (of_lines && is_led_all_along(placed, block, edge, way)) return;
   std::array<std::array<Measure, kBlockSize>, 2> measures;
   const std::uint32_t count = block.end - block.begin;
@@ -68,7 +68,7 @@ void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlo
                      [&](std::uint32_t i, const Measure& m) { measures[side][i] = m; });
   }
   cost_.samples += 2 * count;
-  const bool moves = when == When::now && longest_way(placed, block) > pair.motion.thresholds.slow;
+  const bool moves = when == When::now && longest > pair.motion.thresholds.slow;
   for (std::uint32_t begin = 0; begin < count; begin += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - begin);
     Candidate best;

@@ -149,7 +149,7 @@ GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "f527f89554cead25"),
     ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "b5a1df3b00a7e5f1"),
     ("peg_in_hole_step", ["--duration", "3"], "1c11014ac055c939"),
-    ("head_tracking", [], "832392ba6624aa23"),
+    ("head_tracking", [], "075ada692eabd59b"),
     ("slide", [], "66f7220e9ed64da6"),
     ("stack", [], "ed20b4e647556a2d"),
 ]
