@@ -60,7 +60,10 @@ TEST(Extremes, TowersOfUnequalBoxesStandWhenItIsDoneAsTheEventSays) {
   Resting light;
   light.boxes = 3;
   light.mass_ratio = 1e-3;
-  const Row pushed = rest("light above", light);
+  EXPECT_TRUE(rest("light above", light).holds);
+  Resting lighter = light;
+  lighter.mass_ratio = 1e-10;
+  const Row pushed = rest("lighter above", lighter);
   EXPECT_FALSE(pushed.holds);
   EXPECT_NE(pushed.why.find("rounding: 'box2'"), std::string::npos) << pushed.why;
   Resting softer = light;
