@@ -22,6 +22,7 @@ struct PlacedFeature {
   [[nodiscard]] Vector3d tangent(const Place& at) const { return is_arc() ? Vector3d(at.c * y - at.s * x) : x; }
 };
 
+/// The feature of a mover that is placed so.
 [[nodiscard]] inline PlacedFeature placed_by(const Placement& at, const Feature& feature) {
   return {&feature, at.R * feature.origin + at.p, at.R * feature.x, at.R * feature.y};
 }
