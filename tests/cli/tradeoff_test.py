@@ -288,7 +288,10 @@ class AutoKeepsItsBounds(ProgramTest):
     hand aims and tilts otherwise in each."""
 
     PATIENCE = 3600 if LONG else 300
-    ERROR, BUDGET = 2, 100  # N, us: the pin jams in some trials, and its force is then chaotic
+    # N, us: the pin jams in some trials, and its force is then chaotic. Which of the settings that keep the error is
+    # chosen hangs on measured times. Three trials bound three of four further ones, so the short form asks for an error
+    # that each of the four settings with precise geometry keeps in its six trials (2.4 N at most), and voxels do not.
+    ERROR, BUDGET = 2 if LONG else 3, 100
 
     def setUp(self):
         super().setUp()
@@ -328,7 +331,7 @@ class AutoKeepsItsBounds(ProgramTest):
     def test_in_trials_that_the_table_was_not_made_from(self):
         if not LONG:
             _, (error, _, _, tried) = self.kept(3, 6, 2)
-            self.assertEqual(error, tried)  # counts and errors are the same on every machine; times are not judged here
+            self.assertEqual(error, tried)  # times are not judged here
             return
         tightest, (error, budget, both, tried) = self.kept(19, 100, 2)
         low, high = wilson(both, tried)
