@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 
 namespace verisim {
 namespace {
@@ -12,10 +13,18 @@ std::size_t width_of(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
 }
 
+/// One harmless line, of characters that are each as wide as another.
+std::string cell_of(const std::string& text) {
+  std::string cell;
+  for (const char c : shown(text)) cell += c == '\t' ? std::string("\\t") : std::string(1, c);
+  return cell;
+}
+
 }  // namespace
 
-TextTable::TextTable(std::vector<std::string> head, std::string sides)
-    : rows_{std::move(head)}, sides_(std::move(sides)) {
+TextTable::TextTable(std::vector<std::string> head, std::string sides) : sides_(std::move(sides)) {
+  rows_.push_back(std::move(head));
+  for (std::string& cell : rows_.front()) cell = cell_of(cell);
   const std::size_t columns = rows_.front().size();
   VERISIM_ASSERT(columns > 0);
   if (sides_.empty()) {
@@ -27,6 +36,7 @@ TextTable::TextTable(std::vector<std::string> head, std::string sides)
 
 void TextTable::add(std::vector<std::string> cells) {
   VERISIM_ASSERT(cells.size() == rows_.front().size());
+  for (std::string& cell : cells) cell = cell_of(cell);
   rows_.push_back(std::move(cells));
 }
 

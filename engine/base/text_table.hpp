@@ -1,4 +1,5 @@
-// Text in columns, each as wide as what stands in it.
+// Text in columns, each as wide as what stands in it. What stands there may come from outside: a cell is shown as one
+// harmless line (text.hpp), its tabs as \t.
 #pragma once
 
 #include <string>

@@ -7,6 +7,12 @@
 #include "engine/base/user_file.hpp"
 
 namespace verisim::batch {
+
+void refuse_damaged(const std::string& path, const std::string& cause) {
+  fail(ErrorKind::input, "{}: is no index of a batch or is damaged ({}); move it away and run the batch again", path,
+       cause);
+}
+
 namespace {
 
 [[noreturn]] void refuse(sqlite3* database, const std::string& path) {
@@ -15,8 +21,10 @@ namespace {
   switch (code & 0xff) {
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
-      fail(ErrorKind::input, "{}: is no index of a batch or is damaged ({}); move it away and run the batch again",
-           path, cause);
+    case SQLITE_ERROR:  // no such table, no such column
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+      refuse_damaged(path, cause);
     default:
       fail(ErrorKind::io,
            "{}: cannot be written ({}); make room or name another folder with -o; the same command then goes on", path,

@@ -1,4 +1,5 @@
-// SQLite, as far as a batch needs it: an open file, statements, rows. Errors of the disk are Error(io) with the place.
+// SQLite, as far as a batch needs it: an open file, statements, rows. Errors of the disk are Error(io) with the place,
+// what is no database or not the one that was made here Error(input).
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,8 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace verisim::batch {
+
+[[noreturn]] void refuse_damaged(const std::string& path, const std::string& cause);
 
 /// "NAME" as an identifier of SQL.
 [[nodiscard]] std::string sql_name(const std::string& name);

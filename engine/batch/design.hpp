@@ -75,6 +75,7 @@ struct DesignRequest {
   std::vector<std::string> vary, random;
   std::string design_name, design_content;  ///< the CSV's; an empty name: none
   std::vector<std::string> set_keys;        ///< of --set: equal in all runs
+  bool seed_is_a_parameter = false;         ///< the scenario has one of that name: a column `seed` says too little
   std::uint64_t repeat = 1, seed = 1;
   std::string shard;  ///< "I/N"; empty: all runs
 };
@@ -84,7 +85,7 @@ struct DesignRequest {
 using ReadValue = std::function<Cell(const std::string& option, const std::string& key, const std::string& text)>;
 
 /// Error(usage): nothing to vary, a KEY in two places, a value twice, too many runs (says how many), a shard that there
-/// is not. Error(input) with FILE:LINE for the table.
+/// is not. Error(input) with FILE:LINE for the table, too if its column `seed` may be the runs' or a parameter's.
 [[nodiscard]] Design make_design(const DesignRequest& request, const ReadValue& read);
 
 /// All that makes two designs the same but the seed and the shard; for batch.json.

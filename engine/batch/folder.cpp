@@ -96,6 +96,21 @@ void clear_half_merged(const std::string& folder) {
 
 }  // namespace
 
+namespace {
+
+/// Does it have what a merge and a summary read of it?
+bool is_manifest(const ordered_json& json) {
+  const auto has = [&](const char* name, auto is) { return json.contains(name) && is(json[name]); };
+  const auto is_count = [](const ordered_json& j) { return j.is_number_unsigned(); };
+  const auto is_text = [](const ordered_json& j) { return j.is_string(); };
+  const auto is_object = [](const ordered_json& j) { return j.is_object(); };
+  return has("version", is_text) && has("runs", is_count) && has("seed", is_count) && has("design", is_object) &&
+         has("shard", [](const ordered_json& j) { return j.is_null() || j.is_object(); }) &&
+         has("groups", [&](const ordered_json& j) { return j.is_array() && std::all_of(j.begin(), j.end(), is_text); });
+}
+
+}  // namespace
+
 std::string first_difference(const ordered_json& there, const ordered_json& here,
                              const std::vector<std::string>& ignored) {
   ordered_json a = there, b = here;
@@ -109,7 +124,11 @@ ordered_json read_any_manifest(const std::string& folder) {
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: holds no batch ({} is not there); name a folder of verisim batch", folder, kManifest);
   ordered_json json = ordered_json::parse(UserFile(file, file).content(), nullptr, false);
-  if (!json.is_object() || !json.contains("format") || json["format"] != "verisim-batch")
+  const bool is_ours = json.is_object() && json.contains("format") && json["format"] == "verisim-batch";
+  if (is_ours && json.value("format_version", ordered_json()) != kManifestFormat)
+    fail(ErrorKind::input, "{}: is of format {}, this program reads {}; go on with the version that wrote it", file,
+         leaf_text(json.value("format_version", ordered_json())), kManifestFormat);
+  if (!is_ours || !is_manifest(json))
     fail(ErrorKind::input, "{}: does not say what batch this is; move the folder away and run the batch again", file);
   return json;
 }

@@ -36,6 +36,8 @@ class Folder {
 /// The index of a batch's folder: index.sqlite.
 [[nodiscard]] std::string index_of(const std::string& folder);
 
+inline constexpr int kManifestFormat = 1;
+
 /// batch.json of a folder. Error(input): there is none, or it is something else.
 [[nodiscard]] nlohmann::ordered_json read_any_manifest(const std::string& folder);
 /// Likewise, and Error(input) if what makes the folder is a merge that has not ended.

@@ -89,6 +89,8 @@ Index::Index(const std::string& path, const Layout& layout, const std::string& v
     : Index(path, Database::Access::write) {
   const Cell format = database_->value("PRAGMA user_version");
   if (format == Cell(std::int64_t{0})) {
+    if (database_->value("SELECT count(*) FROM sqlite_master") != Cell(std::int64_t{0}))
+      refuse_damaged(path, "no format");
     layout_ = layout;
     make_tables(version);
     return;
@@ -105,6 +107,7 @@ Index Index::open(const std::string& path, const std::string& version) {
 
 void Index::check_version(const std::string& version) {
   const Cell format = database_->value("PRAGMA user_version");
+  if (format == Cell(std::int64_t{0})) refuse_damaged(database_->path(), "no format");
   if (format != Cell(std::int64_t{kFormat}))
     fail(ErrorKind::input,
          "{}: has format {}, this program writes {}; go on with the version that wrote it, or name "
@@ -117,8 +120,12 @@ void Index::check_version(const std::string& version) {
          "another "
          "folder with -o",
          database_->path(), shown(made_by, 80), version);
-  layout_ =
-      layout_of(ordered_json::parse(plain_text(database_->value("SELECT value FROM meta WHERE name = 'layout'"))));
+  try {
+    layout_ =
+        layout_of(ordered_json::parse(plain_text(database_->value("SELECT value FROM meta WHERE name = 'layout'"))));
+  } catch (const ordered_json::exception&) {
+    refuse_damaged(database_->path(), "no layout");
+  }
 }
 
 void Index::make_tables(const std::string& version) {
@@ -215,7 +222,8 @@ void Index::add_inputs(const Answer& answer) {
       known.step();
       if (before != sha256)
         fail(ErrorKind::input,
-             "{}: was changed while the batch ran: its runs would not be of one scenario; put the former content back, "
+             "{}: was changed since the batch began: its runs would not be of one scenario; put the former content "
+             "back, "
              "or name another folder with -o",
              shown(name));
       continue;
@@ -311,9 +319,18 @@ std::uint64_t Index::count(const std::string& status) {
   return static_cast<std::uint64_t>(std::get<std::int64_t>(statement.column(0)));
 }
 
-std::uint64_t Index::count_unanswered() {
-  return static_cast<std::uint64_t>(
-      std::get<std::int64_t>(database_->value("SELECT count(*) FROM timing WHERE answered = 0")));
+std::uint64_t Index::count_unanswered(const std::string& status) {
+  Statement statement = database_->prepare(
+      "SELECT count(*) FROM timing JOIN run USING (run) WHERE answered = 0 AND (?1 = '' OR status = ?1)");
+  statement.bind(1, status);
+  statement.step();
+  return static_cast<std::uint64_t>(std::get<std::int64_t>(statement.column(0)));
+}
+
+std::uint64_t Index::count_without_run_file(bool of_done) {
+  return static_cast<std::uint64_t>(std::get<std::int64_t>(database_->value(
+      fmt::format("SELECT count(*) FROM run WHERE ifnull(run_file, '') = '' AND status IN ('diverged'{})",
+                  of_done ? ", 'done'" : ""))));
 }
 
 void Index::take_over(const std::string& path) {
@@ -323,6 +340,12 @@ void Index::take_over(const std::string& path) {
   std::vector<std::pair<std::string, std::string>> units;
   for (const std::string& name : measures) units.emplace_back(name, other.unit_of(name));
   const std::vector<std::string> run = other.database_->columns("run"), timing = other.database_->columns("timing");
+  const auto expect = [&](const std::vector<std::string>& columns, const std::string& column) {
+    if (std::find(columns.begin(), columns.end(), column) == columns.end()) refuse_damaged(path, "no column " + column);
+  };
+  for (const auto& columns : {head_columns(layout_), figure_columns(layout_)})
+    for (const std::string& column : columns) expect(run, column);
+  for (const IndexColumn& column : layout_.timing) expect(timing, column.name);
   Answer inputs;
   Statement names = other.database_->prepare("SELECT name, sha256 FROM input");
   while (names.step()) inputs.inputs[plain_text(names.column(0))] = plain_text(names.column(1));

@@ -65,9 +65,11 @@ class Index {
   void read(const std::vector<std::string>& columns, const std::function<void(const std::vector<Cell>&)>& row);
   /// index.csv and timing.csv, whole or not at all. Error(io).
   void write_csv(const std::string& folder);
-  /// Number of runs by status, and of those without an answer (RunCounts::undone).
+  /// Number of runs by status, and of those without an answer: all, or of one status.
   [[nodiscard]] std::uint64_t count(const std::string& status);
-  [[nodiscard]] std::uint64_t count_unanswered();
+  [[nodiscard]] std::uint64_t count_unanswered(const std::string& status = {});
+  /// Of runs that diverged, and if asked of those that are done: how many have no run file.
+  [[nodiscard]] std::uint64_t count_without_run_file(bool of_done);
 
  private:
   Index(const std::string& path, Database::Access access) : database_(std::make_unique<Database>(path, access)) {}

@@ -49,7 +49,8 @@ Axis read_axis(const std::string& option, const ReadValue& read) {
   return axis;
 }
 
-Table read_table(const std::string& name, const std::string& content, const ReadValue& read, Places& places) {
+Table read_table(const DesignRequest& request, const ReadValue& read, Places& places) {
+  const std::string &name = request.design_name, &content = request.design_content;
   const std::vector<CsvRow> rows = read_csv(name, content);
   if (rows.empty())
     fail(ErrorKind::input, "{}: is empty; its first line names parameters, each further line is a run", name);
@@ -60,6 +61,11 @@ Table read_table(const std::string& name, const std::string& content, const Read
     columns.push_back(trimmed(field));
     if (columns.back().empty()) fail(ErrorKind::input, "{}:1: column {} has no name", name, columns.size());
     places.take(columns.back(), fmt::format("{}:1", name), ErrorKind::input);
+    if (columns.back() == "seed" && request.seed_is_a_parameter)
+      fail(ErrorKind::input,
+           "{}:1: 'seed' may be the runs' seed or the scenario's parameter of that name; call the parameter otherwise, "
+           "or vary it with --vary",
+           name);
     if (columns.back() != "seed") table.keys.push_back(columns.back());
   }
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -144,8 +150,7 @@ Design make_design(const DesignRequest& request, const ReadValue& read) {
   if (design.repeat == 0) fail(ErrorKind::usage, "--repeat 0: no run: the design is empty; write 1 or more");
   Places places;
   for (const std::string& key : request.set_keys) places.take(key, "--set " + key);
-  if (!request.design_name.empty())
-    design.table = read_table(request.design_name, request.design_content, read, places);
+  if (!request.design_name.empty()) design.table = read_table(request, read, places);
   for (const std::string& option : request.vary) {
     places.take(split_key("--vary", option).first, "--vary " + shown(option, 80));
     design.axes.push_back(read_axis(option, read));

@@ -14,8 +14,11 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <new>
+#include <stdexcept>
 
 #include "engine/base/error.hpp"
+#include "engine/base/text.hpp"
 
 namespace verisim::batch {
 namespace {
@@ -25,6 +28,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kLastWords = 2000;                   // bytes of stderr that are kept
 constexpr std::size_t kAnswerMax = std::size_t{64} << 20;  // bytes: who says more is out of order
 constexpr int kFailed = 1;                                 // exit code of a worker whose work threw
+constexpr int kNoMemory = 99;                              // likewise, for want of memory: no ErrorKind's
 
 double seconds_of(const timeval& t) {
   return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
@@ -114,6 +118,10 @@ void Workers::be_worker(std::uint64_t run, int answer, int words, int parent) co
   } catch (const Error& error) {
     write_all(STDERR_FILENO, error.what());
     ::_exit(error.exit_code());
+  } catch (const std::bad_alloc&) {
+    ::_exit(kNoMemory);
+  } catch (const std::length_error&) {  // more than any memory could hold
+    ::_exit(kNoMemory);
   } catch (const std::exception& error) {
     write_all(STDERR_FILENO, error.what());
   } catch (...) {
@@ -157,6 +165,7 @@ WorkerEnd Workers::reap(Worker& worker) const {
   }
   if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.out_of_memory = end.exit_code == kNoMemory;
   end.answer = std::move(worker.answered);
   end.timed_out = worker.timed_out;
   end.last_words = std::move(worker.said);
@@ -210,6 +219,20 @@ std::vector<WorkerEnd> Workers::wait(double wait_s) {
 std::string signal_name(int signal) {
   const char* name = ::sigabbrev_np(signal);
   return name == nullptr ? fmt::format("signal {}", signal) : fmt::format("SIG{}", name);
+}
+
+std::string why_no_answer(const WorkerEnd& end, const WorkerLimits& limits) {
+  VERISIM_ASSERT(end.exit_code != 0);
+  const std::string words = end.last_words.empty() ? "" : ": " + shown(end.last_words);
+  constexpr double kMebibyte = 1 << 20;
+  if (end.timed_out) return fmt::format("no answer within {:g} s (--time-limit)", limits.time_s);
+  if (end.out_of_memory && limits.memory_bytes == 0) return "out of memory" + words;
+  if (end.out_of_memory)
+    return fmt::format("out of memory: wanted more than {:.0f} MiB (--memory-limit){}",
+                       static_cast<double>(limits.memory_bytes) / kMebibyte, words);
+  if (end.signal == SIGKILL) return "ended by SIGKILL, by hand or by the system for want of memory" + words;
+  if (end.signal != 0) return "ended by " + signal_name(end.signal) + words;
+  return fmt::format("ended with exit code {}{}", end.exit_code, words);
 }
 
 unsigned cores() {

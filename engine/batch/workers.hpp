@@ -26,7 +26,8 @@ struct WorkerEnd {
   int exit_code = -1;  ///< -1: a signal ended it
   int signal = 0;
   bool timed_out = false;
-  std::string last_words;  ///< the end of what it said on stderr
+  bool out_of_memory = false;  ///< it wanted more than it may have
+  std::string last_words;      ///< the end of what it said on stderr
   double wall_s = 0, user_s = 0, system_s = 0;
   std::uint64_t memory_bytes = 0;  ///< the most that it had resident
 };
@@ -34,8 +35,8 @@ struct WorkerEnd {
 class Workers {
  public:
   /// @param work computes a run and returns its answer; called in the worker, whose stdout is nowhere. What it throws
-  ///        ends the worker with exit code 1, an Error's its own, and its text as last words. @pre jobs > 0; this
-  ///        process has one thread
+  ///        ends the worker with exit code 1, an Error's its own, and its text as last words; what there is no
+  ///        memory for, with `out_of_memory`. @pre jobs > 0; this process has one thread
   Workers(unsigned jobs, WorkerLimits limits, std::function<std::string(std::uint64_t run)> work);
   ~Workers();  ///< kills those that work
   Workers(const Workers&) = delete;
@@ -61,6 +62,10 @@ class Workers {
 
 /// "SIGSEGV", "signal 42".
 [[nodiscard]] std::string signal_name(int signal);
+
+/// Why a worker gave no answer: "no answer within 60 s (--time-limit)", "out of memory: …", "ended by SIGSEGV: …", else
+/// `ended with exit code 3: …`. @pre its exit code is not 0
+[[nodiscard]] std::string why_no_answer(const WorkerEnd& end, const WorkerLimits& limits);
 
 /// Cores that this process may use.
 [[nodiscard]] unsigned cores();

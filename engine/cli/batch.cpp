@@ -1,4 +1,4 @@
-#include <csignal>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -16,6 +16,7 @@
 #include "engine/batch/merge.hpp"
 #include "engine/batch/summary.hpp"
 #include "engine/batch/workers.hpp"
+#include "engine/cli/batch_output.hpp"
 #include "engine/cli/batch_worker.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
@@ -58,16 +59,11 @@ BatchRunOptions::Keep keep_of(const std::string& word) {
   return word == "failed" ? BatchRunOptions::Keep::failed : BatchRunOptions::Keep::summary;
 }
 
-/// 1 if some runs could not be done, and a line that says so.
-int exit_code_of(batch::Index& index, const std::string& folder) {
-  const std::uint64_t undone = index.count_unanswered();
-  if (undone == 0) return 0;
-  print_error(
-      fmt::format("{}: {} of {} runs could not be done; the column error of index.csv says why; give them more with "
-                  "--time-limit or --memory-limit in another folder",
-                  folder, undone, index.runs().size())
-          .c_str());
-  return 1;
+[[noreturn]] void refuse_gone(const std::string& name) {
+  fail(ErrorKind::input,
+       "{}: is gone since the batch began: its runs would not be of one scenario; put it back, or name another folder "
+       "with -o",
+       shown(name));
 }
 
 /// One batch: its design, its folder, its rows.
@@ -81,6 +77,8 @@ class Batch {
 
  private:
   Design read_design();
+  void check_inputs();
+  void say_what_was_not_kept();
   [[nodiscard]] ordered_json manifest() const;
   [[nodiscard]] std::string work(std::uint64_t run) const;
   void take(const batch::WorkerEnd& end);
@@ -131,6 +129,17 @@ Batch::Batch(const BatchOptions& o) : o_(o) {
   folder_ = std::make_unique<batch::Folder>(run_options_.folder, manifest());
   index_ = std::make_unique<batch::Index>(batch::index_of(folder_->path()), layout_, program_version());
   index_->expect_input(fs::path(scenario.path).filename().string(), scenario_sha256_);
+  check_inputs();
+}
+
+/// Error(input) if a file that runs before this call read has another content now, or is gone.
+void Batch::check_inputs() {
+  const ScenarioOptions& scenario = run_options_.scenario;
+  Inputs inputs = Inputs::live(fs::path(scenario.path).parent_path().string(), named_paths(scenario));
+  for (const std::string& name : index_->inputs()) {
+    if (!inputs.exists(name)) refuse_gone(name);
+    index_->expect_input(name, sha256(inputs.read(name)));
+  }
 }
 
 Design Batch::read_design() {
@@ -145,6 +154,8 @@ Design Batch::read_design() {
   request.design_name = o_.design_file;
   if (!o_.design_file.empty()) request.design_content = UserFile(o_.design_file, o_.design_file).content();
   for (const auto& [key, value] : scenario.sets) request.set_keys.push_back(key);
+  const bool has_seed = std::any_of(declared_.begin(), declared_.end(), [](const auto& p) { return p.name == "seed"; });
+  request.seed_is_a_parameter = has_seed;
   request.repeat = o_.repeat;
   request.seed = o_.seed;
   request.shard = o_.shard;
@@ -165,7 +176,7 @@ ordered_json Batch::manifest() const {
   design["measure"] = o_.measure;
   const bool whole = design_.shard.of == 1;
   return {{"format", "verisim-batch"},
-          {"format_version", 1},
+          {"format_version", batch::kManifestFormat},
           {"version", VERISIM_VERSION},
           {"commit", commit()},
           {"scenario", run_options_.scenario.path},
@@ -196,6 +207,18 @@ batch::RowHead Batch::head_of(const batch::Point& point, const Answer& answer) c
   return head;
 }
 
+/// Runs that are done are not done again, so their files are not there even if they are to be kept now.
+void Batch::say_what_was_not_kept() {
+  using Keep = BatchRunOptions::Keep;
+  if (run_options_.keep == Keep::summary || o_.quiet) return;
+  const std::uint64_t runs = index_->count_without_run_file(run_options_.keep == Keep::all);
+  if (runs == 0) return;
+  std::fprintf(stderr,
+               "note: %s: %s of the runs that were done before %s no run file: --keep is of those that this call does; "
+               "name another folder with -o for all\n",
+               shown(folder_->path()).c_str(), fmt::format("{}", runs).c_str(), runs == 1 ? "has" : "have");
+}
+
 /// In the worker.
 std::string Batch::work(std::uint64_t run) const {
   const batch::Point point = design_.point(run);
@@ -214,21 +237,8 @@ Answer Batch::answer_to(const batch::WorkerEnd& end) const {
     answer = batch::answer_of(end.answer);
   } else {
     answer.answered = false;
-    answer.status = "failed";
-    const std::string words = end.last_words.empty() ? "" : ": " + shown(end.last_words);
-    if (end.timed_out) {
-      answer.status = "timeout";
-      answer.error = fmt::format("no answer within {} s (--time-limit)", limits_.time_s);
-    } else if (words.find("bad_alloc") != std::string::npos) {
-      answer.status = "memory";
-      answer.error = "out of memory" + words;
-    } else if (end.signal == SIGKILL) {
-      answer.error = "ended by SIGKILL, by hand or by the system for want of memory" + words;
-    } else if (end.signal != 0) {
-      answer.error = "ended by " + batch::signal_name(end.signal) + words;
-    } else {
-      answer.error = fmt::format("ended with exit code {}{}", end.exit_code, words);
-    }
+    answer.status = end.timed_out ? "timeout" : end.out_of_memory ? "memory" : "failed";
+    answer.error = batch::why_no_answer(end, limits_);
   }
   answer.timing["process_s"] = end.wall_s;
   answer.timing["user_s"] = end.user_s;
@@ -252,11 +262,7 @@ void Batch::add_row(const batch::Point& point, const Answer& answer) {
   const fs::path folder = fs::path(run_options_.scenario.path).parent_path();
   if (answer.status != "done" && answer.answered)
     for (const std::string& name : index_->inputs())
-      if (!identity_of((folder / name).string()) && !identity_of(name))
-        fail(ErrorKind::input,
-             "{}: is gone since the batch began: its runs would not be of one scenario; put it back, or name another "
-             "folder with -o",
-             shown(name));
+      if (!identity_of((folder / name).string()) && !identity_of(name)) refuse_gone(name);
   try {
     index_->add(head_of(point, answer), answer);
   } catch (const Error& error) {
@@ -310,6 +316,7 @@ void Batch::say_progress(std::uint64_t done, std::uint64_t all) {
 }
 
 void Batch::compute() {
+  say_what_was_not_kept();
   const InterruptScope until_the_index_is_whole;
   line_ = std::make_unique<ProgressLine>(!o_.quiet);
   const std::vector<std::uint64_t> there = index_->runs();
@@ -341,22 +348,6 @@ void Batch::compute() {
   fs::remove(folder_->file("runs"), ignored);  // if nothing was kept in it
   index_->write_csv(folder_->path());
   wall_s_ = watch_.seconds();
-}
-
-/// Counts and groups of a folder's index.
-ordered_json json_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
-  ordered_json json = {{"folder", folder}, {"runs", index.runs().size()}};
-  for (const char* status : batch::kStatuses) json[status] = index.count(status);
-  json["groups"] = to_json(summary);
-  return json;
-}
-
-std::string table_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
-  std::string counts;
-  for (const char* status : batch::kStatuses)
-    if (const std::uint64_t n = index.count(status))
-      counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", n, status);
-  return fmt::format("{}: {} runs: {}\n{}", folder, index.runs().size(), counts, batch::table_of(summary));
 }
 
 /// Names of the columns of parameters.
@@ -414,7 +405,8 @@ void add_design_options(CLI::App& command, BatchOptions& o) {
                   "N KEY=LOW..HIGH …: N draws; also uniform:LOW:HIGH, normal:MEAN:SD, zone:H7:25mm (a diameter)")
       ->expected(1, 1000)
       ->take_all();
-  command.add_option("--repeat", o.repeat, "Repetitions, each with its own seed");
+  command.add_option("--repeat", o.repeat, "Repetitions, each with its own seed")
+      ->check(CLI::Range(std::uint64_t{0}, batch::kRunsMax));
   command.add_option("--shard", o.shard, "I/N: the I-th of N parts of the runs; 'batch merge' joins them");
   add_seed_option(
       command, [&o](std::uint64_t seed) { o.seed = seed; },

@@ -209,7 +209,8 @@ void add_inspect(CLI::App& app, int& exit_code) {
       "Example: verisim inspect bearing.step --voxel 0.0005\n"
       "         verisim inspect scenarios/peg_in_hole.lua --set clearance=mm(2)");
   command->callback([=, &exit_code] {
-    const bool is_scenario = std::filesystem::path(o->model).extension() == ".lua";
+    const std::string suffix = std::filesystem::path(o->model).extension().string();
+    const bool is_scenario = suffix == ".lua" || suffix == ".LUA";
     for (const char* option : {"--voxel", "--scale", "--density", "--deflection"})
       if (is_scenario && command->count(option) > 0)
         fail(ErrorKind::usage, "{}: a scenario says it itself; give {} with a model", option, option);

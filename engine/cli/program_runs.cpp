@@ -201,6 +201,9 @@ compare::Comparison compare_programs(const ProgramsAsked& asked) {
   (void)run_program(asked.b, for_b, work);
   compare::Comparison c{.kind = "programs", .a = {asked.a, "", ""}, .b = {asked.b, "", ""}};
   if (is_run(asked.arguments)) {
+    for (const auto& [program, file] : {std::pair(asked.a, file_a), std::pair(asked.b, file_b)})
+      if (!identity_of(file))
+        fail(ErrorKind::input, "{}: ended with 0 and wrote no run file; name a built verisim", program);
     c = compare::compare_runs(file_a, file_b, compare::built_in_bounds());
     c.kind = "programs";
     c.a.path = asked.a;

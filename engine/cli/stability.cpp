@@ -126,8 +126,7 @@ Row lost(const Task& task, const batch::WorkerEnd& end) {
   row.outcome = stability::Outcome::refused;
   row.theory = "an answer";
   row.holds = false;
-  row.why = end.exit_code >= 0 ? end.last_words
-                               : fmt::format("ended by {}: {}", batch::signal_name(end.signal), end.last_words);
+  row.why = end.exit_code > 0 && !end.out_of_memory ? end.last_words : batch::why_no_answer(end, {});
   return row;
 }
 

@@ -229,11 +229,8 @@ std::string Sweep::in_a_process(const std::function<std::string()>& work) {
     if (ends.empty()) continue;
     const batch::WorkerEnd& end = ends.front();
     if (end.exit_code == 0) return end.answer;
-    if (end.timed_out) fail(ErrorKind::input, "no answer within {:g} s (--time-limit)", limits_.time_s);
-    const std::string words = shown(end.last_words);
-    if (end.signal != 0)
-      fail(ErrorKind::input, "ended by {}{}", batch::signal_name(end.signal), words.empty() ? "" : ": " + words);
-    fail(ErrorKind::input, "{}", words.empty() ? fmt::format("ended with exit code {}", end.exit_code) : words);
+    const bool has_words = end.exit_code > 0 && !end.out_of_memory && !end.timed_out && !end.last_words.empty();
+    fail(ErrorKind::input, "{}", has_words ? shown(end.last_words) : batch::why_no_answer(end, limits_));
   }
 }
 

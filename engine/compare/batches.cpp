@@ -275,6 +275,20 @@ void compare_times(const BatchFolder& a, const BatchFolder& b, const std::vector
                   100 * bounds.effect_apart));
 }
 
+/// Runs of other spans of time do not cost the same.
+void note_other_durations(const IndexTable& a, const IndexTable& b, const std::vector<Pair>& pairs, Comparison& to) {
+  const auto of_a = a.find("simulated_s"), of_b = b.find("simulated_s");
+  if (!of_a || !of_b) return;
+  const auto other = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    return a.cell(pair.row_a, *of_a) != b.cell(pair.row_b, *of_b);
+  });
+  if (other > 0)
+    to.notices.push_back(
+        fmt::format("{} of {} runs simulate another time in B (simulated_s): counts, largest values and times are of "
+                    "other spans",
+                    other, pairs.size()));
+}
+
 /// A list that no reader would go through is cut, and says how much is left out.
 void shorten(std::vector<std::string>& list) {
   constexpr std::size_t kMost = 20;
@@ -296,6 +310,7 @@ Comparison compare_batches(const std::string& path_a, const std::string& path_b,
   const std::vector<Pair> pairs = pairs_of(a.index, b.index, c);
   c.notices.push_back(fmt::format("{} runs are in both, with the same parameters and seed", pairs.size()));
   if (!pairs.empty()) {
+    note_other_durations(a.index, b.index, pairs, c);
     compare_columns(a.index, b.index, pairs, bounds, c);
     compare_times(a, b, pairs, bounds, c);
   }

@@ -22,7 +22,7 @@ IndexTable::IndexTable(const std::string& path) : path_(path) {
            row.fields.size(), columns_.size());
     rows_.push_back({row.line, std::move(row.fields)});
   }
-  if (rows_.empty()) fail(ErrorKind::input, "{}: has no runs; end the batch first", path);
+  if (rows_.empty()) fail(ErrorKind::input, "{}: has no runs: there is nothing to compare", path);
 }
 
 std::optional<std::size_t> IndexTable::find(const std::string& column) const {

@@ -120,7 +120,9 @@ void compare_accuracy(const json& of_a, const json& of_b, const Bounds& bounds, 
   }
   for (const auto& [name, value] : measures_b)
     if (measures_a.count(name) == 0) to.only_b.push_back("measure '" + name + "'");
-  const auto word = [](const json& j, const char* name) { return j.value(name, std::string()); };
+  const auto word = [](const json& j, const char* name) {
+    return j.contains(name) && j[name].is_string() ? j[name].get<std::string>() : std::string();
+  };
   const std::string source = "penetration_source";
   if (word(of_a, "penetration_source") != word(of_b, "penetration_source"))
     to.accuracy.push_back(same_word(source, word(of_a, source.c_str()), word(of_b, source.c_str()), Change::changed));
@@ -169,6 +171,14 @@ void note_what_differs(const RunFile& a, const RunFile& b, Comparison& to) {
   };
   for (const char* name : {"seed", "dt"})
     if (is_other(name)) to.notices.push_back(fmt::format("the runs have another {}", name));
+  const auto simulated = [](const RunFile& file) {
+    const std::map<std::string, double> numbers = numbers_of(file);
+    const auto found = numbers.find("simulated_s");
+    return found == numbers.end() ? 0 : found->second;
+  };
+  if (const double x = simulated(a), y = simulated(b); x != y)
+    to.notices.push_back(
+        fmt::format("A simulates {:g} s, B {:g} s: counts, largest values and times are of other spans", x, y));
   if (is_other("scenario_sha256")) to.notices.push_back("the text of the scenario is not the same");
   if (is_other("cpu")) to.notices.push_back("the runs are of different processors: times tell nothing");
 }

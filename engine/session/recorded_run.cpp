@@ -75,7 +75,8 @@ void make_folder_of(const std::string& file) {
   const fs::path folder = fs::path(file).parent_path();
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
-  if (error) fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", file, error.message());
+  if (error)
+    fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", folder.string(), error.message());
 }
 
 RecordedRun record_run(Session& session, const RecordOptions& options) {

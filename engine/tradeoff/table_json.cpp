@@ -103,6 +103,15 @@ Row row_from(const ordered_json& json) {
   return row;
 }
 
+/// "_Nm" of "N m"; nothing of a plain number.
+std::string unit_suffix(const std::string& unit) {
+  if (unit == "1") return "";
+  std::string suffix = "_";
+  for (const char c : unit)
+    if (c != ' ') suffix += c;
+  return suffix;
+}
+
 std::string csv_text(const ordered_json& value) {
   std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -174,8 +183,9 @@ std::string csv_of(const Table& table) {
   const auto& dials = table.rows.empty() ? none : table.rows.front().parameters;
   csv = "setting";
   for (const auto& [name, value] : dials) csv += "," + csv_text(name);
-  csv += ",time_us,time_us_low,time_us_high,time_us_most,frame_us,load,mean_us,work_us";
-  for (const ErrorKindInfo& kind : kKinds) csv += fmt::format(",{0}_median,{0}_most", kind.name);
+  csv += ",time_us,time_us_low,time_us_high,time_us_most,frame_us,load_us_per_ms,mean_us,work_us";
+  for (const ErrorKindInfo& kind : kKinds)
+    csv += fmt::format(",{0}_median{1},{0}_most{1}", kind.name, unit_suffix(kind.unit));
   csv += ",dominated,failed\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const Row& row = table.rows[i];

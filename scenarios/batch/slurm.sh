@@ -25,8 +25,9 @@ verisim=$(realpath "$verisim")
 cpus=${CPUS:-1}
 mkdir -p "$folder"
 folder=$(realpath "$folder")
-if [ -e "$folder/all" ]; then
-  echo "error: $folder/all is there already: the batch is joined; move it away or name another folder" >&2
+# A folder whose merge was killed says so, and is merged again.
+if [ -e "$folder/all" ] && ! grep -qs '"merging"' "$folder/all/batch.json"; then
+  echo "error: $folder/all is there already; move it away or name another folder" >&2
   exit 3
 fi
 

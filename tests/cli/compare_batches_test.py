@@ -75,6 +75,14 @@ class Batches(Compare):
         report = self.compare(self.batch("a"), self.batch("b", INDEX.replace("depth", "way")), code=1)
         self.assertEqual((report["only_a"], report["only_b"]), (["column depth"], ["column way"]))
 
+    def test_runs_of_other_durations_are_told(self):
+        longer = INDEX.replace(",frames,", ",simulated_s,frames,").replace("0.2,1000,", "0.2,1,1000,").replace("0.1,1000,", "0.1,1,1000,")
+        longer = longer.replace(",,300,", ",,0.3,300,")
+        report = self.compare(self.batch("a", longer), self.batch("b", longer.replace("0.2,1,", "0.2,2,")), code=0)
+        self.assertTrue([n for n in report["notes"] if n.startswith("2 of 4 runs simulate another time in B")], report["notes"])
+        report = self.compare(self.batch("a"), self.batch("b"), code=0)
+        self.assertFalse([n for n in report["notes"] if "another time" in n])
+
     def test_times_are_paired_and_judged_by_a_wide_bound(self):
         rows = 30
         index = INDEX.split("\n")[0] + "\n" + "".join(
@@ -93,6 +101,7 @@ class Batches(Compare):
         a = self.batch("a")
         self.refuse(3, "batch.json", "compare", a, self.folder)
         self.refuse(3, ["peg.lua", "slide.lua", "same scenario"], "compare", a, self.batch("b", scenario="/y/slide.lua"))
+        self.refuse(3, "has no runs: there is nothing to compare", "compare", a, self.batch("e", INDEX.split("\n")[0] + "\n"))
         self.refuse(3, "format 2", "compare", a, self.batch("c", format_version=2))
         self.refuse(3, "verisim batch", "compare", a, self.batch("d", format="another"))
         self.refuse(3, "index.csv:3", "compare", a, self.batch("e", INDEX.replace("1,12,0.005,a,", "1,12,0.005,")))

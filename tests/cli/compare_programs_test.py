@@ -58,6 +58,7 @@ class Programs(Compare):
         scenario = self.write("small.lua", SMALL)
         self.refuse(3, ["none", "cannot be started"], "compare", "--programs", VERISIM, self.path("none"), "--", "run", scenario)
         self.refuse(3, ["ended with 3", "missing.lua"], "compare", "--programs", VERISIM, VERISIM, "--", "run", "missing.lua")
+        self.refuse(3, "/bin/true: ended with 0 and wrote no run file", "compare", "--programs", VERISIM, "/bin/true", "--", "run", scenario)
         for words in (["--"], ["--runs", "1", "--"]):  # what stands behind -- is the programs', in either case
             self.refuse(2, "ARGS have -o", "compare", "--programs", VERISIM, VERISIM, *words, "run", scenario, "-o", "x.h5")
             self.assertFalse(os.path.exists(self.path("x.h5")))

@@ -66,6 +66,7 @@ class Inspect(ProgramTest):
     def test_it_refuses_what_a_run_refuses_and_options_of_the_other_kind(self):
         self.refuse(3, ["voxel"], "inspect", self.write("bad.lua", FAR.replace("voxelsize = 0.005, Solid.box{0.1", "voxelsize = -1, Solid.box{0.1")))
         self.refuse(3, ["no such file"], "inspect", self.path("none.lua"))
+        self.assertIn("plate", self.succeed("inspect", self.write("FAR.LUA", FAR)).stdout)
         self.refuse(3, ["no parameter 'b'"], "inspect", self.write("far.lua", "params{a=1}\n" + FAR), "--set", "b=1")
         self.refuse(2, ["--voxel", "scenario"], "inspect", self.path("far.lua"), "--voxel", "0.001")
         self.refuse(2, ["--set", "model"], "inspect", "x.stl", "--set", "a=1")

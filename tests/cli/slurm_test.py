@@ -126,7 +126,7 @@ class Slurm(ProgramTest):
         again = subprocess.run([os.path.join(SOURCE, "scenarios", "batch", "slurm.sh"), "3", self.path("many"), scenario,
                                 *design], env=self.env, capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(again.returncode, 3)
-        self.assertIn("joined", again.stderr)
+        self.assertIn("is there already", again.stderr)
 
 
 if __name__ == "__main__":

@@ -54,6 +54,7 @@ class Stability(ProgramTest):
     def test_what_is_not_its_own_is_not_replaced(self):
         os.mkdir(self.path("out"))
         self.write("out/extremes.csv", "mine,yours\n1,2\n")
+        self.refuse(5, "file: the folder cannot be made", "stability", "--only", "ledgers", "-o", self.write("file", ""), self.write("small.lua", SMALL))
         self.refuse(5, "extremes.csv", "stability", "--only", "ledgers", "-o", "out", self.write("small.lua", SMALL))
 
     def test_help_has_an_example(self):

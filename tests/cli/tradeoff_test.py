@@ -140,7 +140,9 @@ class Tradeoff(ProgramTest):
         with open(self.path("out/tradeoff.csv"), newline="") as f:
             rows = list(csv.DictReader(f))
         self.assertEqual([r["hybrid"] for r in rows], ["off", "exact"])
-        self.assertGreater(float(rows[0]["force_most"]), float(rows[1]["force_most"]))
+        self.assertGreater(float(rows[0]["force_most_N"]), float(rows[1]["force_most_N"]))
+        for column in ("load_us_per_ms", "torque_median_Nm", "overlap_most_m", "wrench_most", "flips_median"):
+            self.assertIn(column, rows[0])
         with open(self.path("out/tradeoff.svg")) as f:
             self.assertIn("<svg", f.read())
         self.write("out/tradeoff.csv", "mine")

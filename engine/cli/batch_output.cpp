@@ -1,0 +1,37 @@
+#include "engine/cli/batch_output.hpp"
+
+#include "engine/base/text.hpp"
+#include "engine/cli/streams.hpp"
+
+namespace verisim::cli {
+
+using nlohmann::ordered_json;
+
+ordered_json json_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
+  ordered_json json = {{"folder", folder}, {"runs", index.runs().size()}};
+  for (const char* status : batch::kStatuses) json[status] = index.count(status);
+  json["groups"] = to_json(summary);
+  return json;
+}
+
+std::string table_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
+  std::string counts;
+  for (const char* status : batch::kStatuses)
+    if (const std::uint64_t n = index.count(status))
+      counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", n, status);
+  return fmt::format("{}: {} runs: {}\n{}", folder, index.runs().size(), counts, batch::table_of(summary));
+}
+
+int exit_code_of(batch::Index& index, const std::string& folder) {
+  const std::uint64_t undone = index.count_unanswered();
+  if (undone == 0) return 0;
+  std::string advice;
+  if (index.count_unanswered("timeout") > 0) advice += "; more time is given with --time-limit, in another folder";
+  if (index.count_unanswered("memory") > 0) advice += "; more memory is given with --memory-limit, in another folder";
+  print_error(fmt::format("{}: {} of {} runs could not be done; the column error of index.csv says why{}", folder,
+                          undone, index.runs().size(), advice)
+                  .c_str());
+  return 1;
+}
+
+}  // namespace verisim::cli

@@ -1,0 +1,127 @@
+"""A batch's folder that was damaged, forged or whose files were changed: refused with its name, never a raw text."""
+import json
+import os
+import random
+import shutil
+import sqlite3
+import unittest
+
+from batches import LIGHT, SANITIZED, Batches
+
+DESIGN = ["--vary", "speed=0.4,0.5", *LIGHT]
+
+
+class Damaged(Batches):
+    def setUp(self):
+        super().setUp()
+        self.batch("b", *DESIGN)
+
+    def look(self, what, may_be_whole=False):
+        """All that reads the damaged folder `d`: refused with exit code 3 and one line, or not disturbed by it."""
+        refused = 0
+        for args in (["batch", self.scenario, "-o", self.path("d"), *DESIGN],
+                     ["batch", "merge", self.path("m"), self.path("d")],
+                     ["compare", self.path("d"), self.path("b")]):
+            done = self.run_program(*args)
+            self.assertIn(done.returncode, (0, 1, 3), (what, args, done.stderr))
+            self.assertNotIn("exception", done.stderr, (what, args))
+            if done.returncode == 3:
+                refused += 1
+                self.assertRegex(done.stderr, r"^error: .+\n$", (what, args))
+                self.assertEqual(done.stderr.count("\n"), 1, (what, args, done.stderr))
+                self.assertIn(self.path("d"), done.stderr, (what, args))
+            shutil.rmtree(self.path("m"), ignore_errors=True)
+        if not may_be_whole:
+            self.assertGreater(refused, 0, what)
+
+    def copy(self):
+        shutil.rmtree(self.path("d"), ignore_errors=True)
+        shutil.copytree(self.path("b"), self.path("d"))
+        return self.path("d/index.sqlite")
+
+    def test_an_index(self):
+        with open(self.path("b/index.sqlite"), "rb") as f:
+            whole = f.read()
+        draw = random.Random(1)
+        for content in [draw.randbytes(20000), whole[:100], whole[:4096], whole[:-4096], b"SQLite format 3\0" + whole[300:]]:
+            with open(self.copy(), "wb") as f:
+                f.write(content)
+            self.look(f"{len(content)} bytes")
+        statements = [f"DROP TABLE {table}" for table in ("run", "timing", "unit", "input", "meta")]
+        statements += [f"PRAGMA user_version = {version}" for version in (0, 2)]
+        statements += [f"UPDATE meta SET value = '{value}' WHERE name = 'layout'"
+                       for value in ("", "{}", "[]", '{"parameters":[{}],"figures":[],"timing":[]}')]
+        statements += ["DELETE FROM meta", "ALTER TABLE run DROP COLUMN status", "ALTER TABLE timing DROP COLUMN answered"]
+        for statement in statements[::4] if SANITIZED else statements:
+            connection = sqlite3.connect(self.copy())
+            connection.execute(statement)
+            connection.commit()
+            connection.close()
+            self.look(statement)
+
+    def test_what_the_folder_says_of_itself(self):
+        with open(self.path("b/batch.json")) as f:
+            whole = json.load(f)
+        texts = ["", "{", "[]", "null", "x"]
+        for member in whole:
+            left_out = {k: v for k, v in whole.items() if k != member}
+            texts += [json.dumps(left_out)]
+            texts += [json.dumps({**whole, member: value}) for value in (None, -1, "x", [1], {}, {"x": {}})]
+        for text in texts[::9] if SANITIZED else texts:
+            self.copy()
+            with open(self.path("d/batch.json"), "w") as f:
+                f.write(text)
+            self.look(text, may_be_whole=True)  # the machine and the scenario's place may be others
+
+    def test_a_file_that_a_finished_batch_read(self):
+        with open(self.scenario) as f:
+            text = f.read()
+        self.write("of_many.lua", "return 1")
+        self.write("many.lua", "require 'of_many'\n" + text)
+        self.batch("r", *DESIGN)
+        self.assertEqual(self.batch("r", *DESIGN).returncode, 0)
+        self.write("of_many.lua", "return 2")
+        done = self.batch("r", *DESIGN)
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertRegex(done.stderr, "^error: of_many.lua: was changed since the batch began")
+        os.remove(self.path("of_many.lua"))
+        self.assertRegex(self.batch("r", *DESIGN).stderr, "^error: .*there is no module 'of_many'")
+
+    def test_runs_that_were_done_before_cannot_be_kept(self):
+        done = self.batch("b", *DESIGN, "--keep", "all")
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, "^note: .*2 of the runs that were done before have no run file")
+        self.assertEqual(self.batch("b", *DESIGN, "--keep", "failed").stderr, "")
+        self.batch("k", *DESIGN, "--keep", "all")
+        self.assertEqual(self.batch("k", *DESIGN, "--keep", "all").stderr, "")
+
+
+class Texts(Batches):
+    def test_a_value_with_lines_does_not_break_the_table(self):
+        self.write("d.csv", 'misbehave,speed\n"x\ny",1\n"x\tz",2\n')
+        done = self.batch("b", "--design", self.path("d.csv"), *LIGHT)
+        lines = [line for line in done.stdout.splitlines() if "heads" in line or "tails" in line]
+        self.assertEqual(len(lines), 2, done.stdout)
+        self.assertIn("x\\ny", lines[0])
+        self.assertIn("x\\tz", lines[1])
+        self.assertEqual(lines[0].index("1  "), lines[1].index("2  "))
+
+    def test_a_column_seed_is_not_taken_for_what_it_may_not_be(self):
+        self.write("s.lua", "local p = params{ seed = 3 }\ndefineSimulationParameters{ duration = 0.01 }\n")
+        self.write("d.csv", "seed\n5\n")
+        done = self.run_program("batch", self.path("s.lua"), "--design", self.path("d.csv"), "-o", self.path("b"))
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("d.csv:1: 'seed' may be the runs' seed or the scenario's parameter", done.stderr)
+
+    def test_advice_is_of_what_happened(self):
+        done = self.batch("b", "--vary", "misbehave=no,hang", "--time-limit", 1, *LIGHT)
+        self.assertIn("--time-limit", done.stderr.splitlines()[-1])
+        self.assertNotIn("--memory-limit", done.stderr.splitlines()[-1])
+        done = self.batch("c", "--repeat", -1)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--repeat", done.stderr)
+        self.assertNotIn("18446744073709551616", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
