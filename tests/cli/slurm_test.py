@@ -1,5 +1,6 @@
 """scenarios/batch/slurm.sh on a real Slurm of one node, from Debian's packages, started here and ended here."""
 import getpass
+import json
 import os
 import shutil
 import socket
@@ -127,6 +128,17 @@ class Slurm(ProgramTest):
                                 *design], env=self.env, capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(again.returncode, 3)
         self.assertIn("is there already", again.stderr)
+        with open(self.path("many/all/batch.json")) as f:  # as a merge that was killed leaves it
+            manifest = json.load(f)
+        with open(self.path("many/all/batch.json"), "w") as f:
+            json.dump({**manifest, "merging": True}, f)
+        os.remove(self.path("many/all/index.csv"))
+        done = subprocess.run([os.path.join(SOURCE, "scenarios", "batch", "slurm.sh"), "3", self.path("many"), scenario,
+                               *design], env=dict(self.env, WAIT="1"), capture_output=True, text=True, cwd=self.folder,
+                              timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.path("one/index.csv"), "rb") as a, open(self.path("many/all/index.csv"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
 
 
 if __name__ == "__main__":
