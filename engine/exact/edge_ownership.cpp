@@ -22,6 +22,18 @@ bool is_beyond(const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
   return nearest != nullptr && nearest->outward[edge.faces[0] == face ? 0 : 1].dot(p - nearest->point) > 0;
 }
 
+/// The place of an edge that is nearest to a point whose foot on the face across is known.
+Vector3d nearest_on(const ExactEdge& edge, const Vector3d& foot) {
+  if (edge.extent != ExactEdge::Extent::line) return foot;
+  return edge.center + std::clamp(edge.direction.dot(foot - edge.center), -edge.half, edge.half) * edge.direction;
+}
+
+/// True if a place lies behind the face across a concave edge, within the edge's extent and no farther: beyond its end
+/// the face goes on.
+bool is_behind(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance, double more) {
+  return distance < -more && edge.limits_face_at(face, p, 0);
+}
+
 /// True if a point of a face's surface lies within the face.
 bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot) {
   const Trim::Answer answer = body.faces[face].trim->find(*body.faces[face].surface, foot);
@@ -31,9 +43,11 @@ bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot)
     if (edge.convexity == Convexity::smooth) {
       if (is_beyond(edge, face, foot)) return false;
     } else {
-      const double distance = body.faces[face_across(edge, face)].surface->at(foot).distance;
-      if (!edge.limits_face_at(face, foot, distance)) continue;
-      if (edge.convexity == Convexity::convex ? distance > 0 : distance < 0) return false;
+      const SurfaceAt there = body.faces[face_across(edge, face)].surface->at(foot);
+      if (!edge.limits_face_at(face, foot, there.distance)) continue;
+      const bool is_off =
+          edge.convexity == Convexity::convex ? there.distance > 0 : is_behind(edge, face, foot, there.distance, 0);
+      if (is_off && !is_hidden(body, face, answer.edges, e, foot, there)) return false;
     }
   }
   return true;
@@ -139,6 +153,27 @@ double kept_share(const BodyPair& pair, const PlacedFeature& placed, const Exact
 
 }  // namespace
 
+bool is_hidden(const ExactBody& base, std::uint32_t face, std::span<const std::uint32_t> edges, std::uint32_t e,
+               const Vector3d& p, const SurfaceAt& across) {
+  constexpr double kBeyond = 1e-6;  // m: what is nearer to a wall lies on it
+  const ExactEdge& edge = base.edges[e];
+  const Vector3d place = nearest_on(edge, p - across.distance * across.normal);
+  for (const std::uint32_t n : edges) {
+    const ExactEdge& nearer = base.edges[n];
+    if (n == e || nearer.convexity == Convexity::smooth) continue;
+    const AnalyticSurface& wall = *base.faces[face_across(nearer, face)].surface;
+    const double here = wall.at(p).distance;
+    if (!(std::abs(here) < std::abs(across.distance)) || !nearer.limits_face_at(face, p, here)) continue;
+    const double side = nearer.convexity == Convexity::convex ? -1 : 1;  // of the wall's distance: where the face is
+    const auto is_beyond = [&](const Vector3d& x) { return side * wall.at(x).distance < -kBeyond; };
+    if (!is_beyond(place)) continue;
+    const bool faces_each_other =
+        edge.extent == ExactEdge::Extent::line && is_beyond(edge.ends[0]) && is_beyond(edge.ends[1]);
+    if (side * here >= -kBeyond || faces_each_other) return true;
+  }
+  return false;
+}
+
 OwnershipRule ownership_rule(double a, double b, double coincident) {
   if (a >= 0 && b >= 0) return OwnershipRule::by_free_motion;
   return std::max(a, b) >= 0 && std::min(a, b) > -coincident ? OwnershipRule::by_last_motion
@@ -194,13 +229,15 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     if (edge.convexity == Convexity::smooth) continue;
     const SurfaceAt there = pair.base.faces[other].surface->at(c.p);
     if (!edge.limits_face_at(face, c.p, there.distance)) continue;
-    is_limited = is_limited || edge.convexity == Convexity::convex || there.distance < 0;
-    if (edge.convexity == Convexity::concave) {
-      // Far behind the face across: if the wall there is thin, the place is outside of the body, on its far side.
-      if (there.distance < -pair.motion.margin) return false;
-      continue;
-    }
-    if (owns_point(pair, c.p, c.at, there, face < other)) continue;
+    const bool is_convex = edge.convexity == Convexity::convex;
+    // Far behind the face across: if the wall there is thin, the place is outside of the body, on its far side.
+    const bool is_mine = is_convex ? owns_point(pair, c.p, c.at, there, face < other)
+                                   : !is_behind(edge, face, c.p, there.distance, pair.motion.margin);
+    const bool counts = !is_limited && (is_convex || there.distance < 0);
+    if ((!is_mine || counts) && is_hidden(pair.base, face, answer.edges, e, c.p, there)) continue;
+    is_limited = is_limited || counts;
+    if (is_mine) continue;
+    if (!is_convex) return false;
     c.weight *= kept_share(pair, placed, edge, face, there, c);
     if (!(c.weight > 0)) return false;
   }

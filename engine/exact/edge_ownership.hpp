@@ -4,9 +4,17 @@
 // reasons. Base coordinates [m] (see candidate.hpp). Private to this folder.
 #pragma once
 
+#include <span>
+
 #include "engine/exact/candidate.hpp"
 
 namespace verisim::exact {
+
+/// True if another of the face's edges hides one from a place: so the far side of a narrow rib or slot is no border of
+/// what lies beside its near side. A place that is beyond the near side, too, is still nearer to it.
+/// @param edges   of the face, near the place    @param across  of the place, from the face across edge e
+[[nodiscard]] bool is_hidden(const ExactBody& base, std::uint32_t face, std::span<const std::uint32_t> edges,
+                             std::uint32_t e, const Vector3d& p, const SurfaceAt& across);
 
 /// Which distances are compared at a convex edge.
 ///   by_position     those of the point as it is: the point is inside both faces

@@ -7,6 +7,7 @@
 //   Gap and normal  are those of the precise surface, less the radius of the feature's ball.
 //   Trim            A place whose foot is beyond the border of a face gives no row with it, unless it comes onto the
 //                   face within the step.
+//                   An edge that another edge of the face hides from the place does not border it there.
 //   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
 //                   larger distance owns the place. At a concave edge each face has its row, so the smaller distance
 //                   counts.
@@ -31,8 +32,8 @@
 //   Reduction       A group of segments has one row, at its closest place at the end of the step. A coincident group
 //                   has rows at its ends too. If the closest place has little weight, the candidate of the largest
 //                   weight has a row too.
-//   Hollows         A rim that slides round within a hollow has the row of its closest place alone: one beside it would
-//                   brake. Where the hollow is hardly wider, the closest place passes much of it within a step: all of
+//   Hollows         A rim that slides round within a hollow, or a hollow one round a pin, has the row of its closest
+//                   place alone: one beside it would brake. Where the hollow is hardly wider, the closest place passes much of it within a step: all of
 //                   the rim's groups have rows, and a ball or a corner has rows all round (conforming_normals.hpp).
 //   Own face        A ball that a curve carries touches only where the curve is closest; within the step that may be
 //                   another place than now.

@@ -174,6 +174,9 @@ std::vector<Vector3d> points_along(const Edge& edge, double spacing, const Analy
     points.push_back(split.point_at(split.from + i * split.width));
   if (std::holds_alternative<OtherCurve>(edge.curve)) {
     for (const Vector3d& p : edge.polyline) points.push_back(projected(first, second, p));
+    if (points.size() == 2) points.insert(points.begin() + 1, projected(first, second, 0.5 * (points[0] + points[1])));
+  } else if (points.size() == 2) {
+    points.insert(points.begin() + 1, split.point_at(split.from + 0.5 * split.width));
   }
   return points;
 }

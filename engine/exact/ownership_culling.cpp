@@ -26,18 +26,20 @@ const ExactEdge* limiting_edge(const BodyPair& pair, const Vector3d& p, std::uin
     const ExactEdge& edge = pair.base.edges[e];
     if (edge.convexity != Convexity::convex) continue;
     const SurfaceAt other = pair.base.faces[face_across(edge, face)].surface->at(p);
-    if (edge.limits_face_at(face, p, other.distance) && !owns_point(pair, p, mine, other, false)) return &edge;
+    if (edge.limits_face_at(face, p, other.distance) && !owns_point(pair, p, mine, other, false) &&
+        !is_hidden(pair.base, face, answer.edges, e, p, other))
+      return &edge;
   }
   return nullptr;
 }
 
 /// True if the edge passes near p and limits `face` there.
-bool is_limited_by(const BodyPair& pair, const ExactEdge& edge, std::uint32_t face, const Vector3d& p,
-                   double distance) {
+bool is_limited_by(const BodyPair& pair, const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
   const auto number = static_cast<std::uint32_t>(&edge - pair.base.edges.data());
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, p);
-  return std::find(answer.edges.begin(), answer.edges.end(), number) != answer.edges.end() &&
-         edge.limits_face_at(face, p, distance);
+  if (std::find(answer.edges.begin(), answer.edges.end(), number) == answer.edges.end()) return false;
+  const SurfaceAt other = pair.base.faces[face_across(edge, face)].surface->at(p);
+  return edge.limits_face_at(face, p, other.distance) && !is_hidden(pair.base, face, answer.edges, number, p, other);
 }
 
 DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const AnalyticSurface& mine,
@@ -100,8 +102,7 @@ void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, con
            ((i == 0 || keeps_lead_towards(i, i - 1)) && (i + 1 == count || keeps_lead_towards(i, i + 1)));
   };
   const auto is_limited = [&](std::uint32_t i) {
-    return gaps_ahead[i] == kOutOfReach ||
-           is_limited_by(pair, *edge, face, place(i), distances.distance[i] + lead.now[i]);
+    return gaps_ahead[i] == kOutOfReach || is_limited_by(pair, *edge, face, place(i));
   };
   const AnalyticSurface& across = *faces[face_across(*edge, face)].surface;
   const auto can_be_pushed = [&](std::uint32_t i) {

@@ -127,7 +127,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     add_face_row(placed, strongest, count, face);
   }
   if (best.gap_ahead >= 0) return;
-  for (const int side : {-1, 1}) add_group_end(placed, best, std::span(estimates).first(count), side, face);
+  for (const int side : {-1, 1}) add_group_end(placed, curve, best, std::span(estimates).first(count), side, face);
 }
 
 /// A closest place at the end of its segment may go on in the next one, whose estimate, a parabola's about its middle,
@@ -192,16 +192,18 @@ bool Search::is_near(const PlacedFeature& placed, std::uint32_t count, Candidate
 /// Is the candidate's place the end of a segment beyond which the curve goes on?
 bool Search::is_between(const PlacedFeature& placed, const Candidate& c) const {
   const Feature& feature = *placed.feature;
-  return feature.own_face == kNoFace && feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width &&
+  return feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width &&
          feature.goes_on(c.sample, c.place.t);
 }
 
-/// True if the curve rolls round within a hollow face, its closest place lies in another segment, and by the end of the
-/// step it will not have come to this end. What slides round a hole then has the one contact that keeps its speed; a
-/// second, at an angle, would brake it. Where the hollow is hardly wider than the curve, the closest place passes along
-/// much of the curve within a step, and ends are needed.
+/// True if the curve rolls round within a hollow face, or as a hollow one round a face, its closest place lies in
+/// another segment, and by the end of the step it will not have come to this end. What slides round a hole then has the
+/// one contact that keeps its speed; a second, at an angle, would brake it. Where the hollow is hardly wider than the
+/// curve, the closest place passes along much of the curve within a step, and ends are needed.
+/// They are needed, too, where a body was put deep inside: its closest place may be too deep for a row.
 bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const {
-  if (!placed.is_arc() || !is_between(placed, c)) return false;
+  constexpr double kDeep = 1e-4;  // m: deeper than motions lead
+  if (!placed.is_arc() || !is_between(placed, c) || c.gap < -kDeep) return false;
   const RelativeMotion& motion = pair_.motion;
   Measure here{};
   with_measure(curve, [&](auto&& measure_at) { here = measure_at(c.place.c, c.place.s); });
@@ -209,7 +211,7 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   const double bend = here.bend / (length * length);  // 1/m, of the gap along the curve
   const double of_curve = c.at.normal.dot(placed.origin - c.p) / (length * length);
   const double of_face = of_curve - bend;
-  if (!(bend > 0 && of_face > 0)) return false;
+  if (!(bend > 0 && of_face * of_curve > 0)) return false;
   const double slide = std::max(pair_.moved(c.p, motion.free_twist).norm(), pair_.moved(c.p, motion.last_twist).norm());
   const double passes = slide * of_face * of_curve / bend;      // rad, along the curve
   const Vector3d axis = placed.x.cross(placed.y).normalized();  // turns about it move the curve along itself
@@ -254,8 +256,8 @@ void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, 
 /// end has a row of one segment if it may be closer than the closest place at the end of the step: a contact that stops
 /// one place by some distance turns the bodies by about that distance over their size. If the face does not accept the
 /// end, the outermost segment that it accepts is taken.
-void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead,
-                           int side, std::uint32_t face) {
+void Search::add_group_end(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                           std::span<const double> gaps_ahead, int side, std::uint32_t face) {
   const double half = placed.feature->half_width;
   const int count = static_cast<int>(gaps_ahead.size());
   const int here = static_cast<int>(best.sample - best.group);
@@ -273,6 +275,7 @@ void Search::add_group_end(const PlacedFeature& placed, const Candidate& best, s
     c.sample = best.group + static_cast<std::uint32_t>(i);
     c.place = place_at(placed.is_arc(), pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], side * half);
     if (!evaluate_candidate(placed, face, 1, c)) continue;
+    if (is_passed_by(placed, curve, c)) return;
     if (is_coincident(c.gap_ahead, (c.p - best.p).norm()))
       add_row(placed, c, 1, face, curving(pair_, placed, c, pair_.base.faces[face], 0));
     return;

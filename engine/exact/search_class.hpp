@@ -59,8 +59,8 @@ class Search {
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
-  void add_group_end(const PlacedFeature& placed, const Candidate& best, std::span<const double> gaps_ahead, int side,
-                     std::uint32_t face);
+  void add_group_end(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                     std::span<const double> gaps_ahead, int side, std::uint32_t face);
   void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);
   void add_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t entity,
                double curving);

@@ -213,7 +213,7 @@ void Recording::add_up_answers(const World& world, const Stages& stages) {
     ++pair.frames;
     pair.switched_off_frames += off ? 1 : 0;
     totals_.by_voxels += by_voxels;
-    if (off || !PairMethods::asked_of(world, l)->needs_precise_surfaces()) continue;
+    if (!PairMethods::asked_of(world, l)->needs_precise_surfaces()) continue;
     exact = true;
     exact_by_voxels = exact_by_voxels || by_voxels > 0;
   }

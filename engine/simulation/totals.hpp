@@ -15,8 +15,8 @@ struct Totals {
   double penetration_max = 0;           ///< m
   std::uint64_t contacts = 0;
   std::uint64_t by_voxels = 0;  ///< of the contacts: voxels answered them
-  /// Frames with a contact of a pair that was to be exact and that no script had switched off; of those, the frames in
-  /// which voxels answered one.
+  /// Frames with a contact of a pair that was to be exact; of those, the frames in which voxels answered one, because
+  /// they had to or because a script had switched exact off.
   std::uint64_t exact_frames = 0, exact_frames_by_voxels = 0;
   std::uint64_t cache_hits = 0, cache_misses = 0;
   std::uint64_t null_misses = 0;  ///< of the misses: recognized, and there was no constraint

@@ -98,13 +98,13 @@ class Fallback(ProgramTest):
         self.assertGreater(summary["by_voxels"], 0)
         self.assertEqual((summary["pairs"], self.counted(run_file)[2]), ([], []))
 
-    def test_what_a_script_switches_off_is_told_and_no_warning(self):
+    def test_what_a_script_switches_off_is_told_and_warned_of(self):
         run_file, summary, said = self.run_bush("--set", "off=true")
         (pair,) = self.assert_told(run_file, summary)
         frames = summary["collision_frames"]
         self.assertEqual(pair["why"], f"switched off in {frames} of {frames} frames with contact")
-        self.assertEqual(summary["exact_frames"], 0)
-        self.assertNotIn("was asked for", said)
+        self.assertEqual((summary["exact_frames"], summary["exact_frames_by_voxels"]), (frames, frames))
+        self.assertIn(f"voxels answered in 100 % of the frames with contact: {pair['why']}", said)
 
     def test_the_warning_begins_above_one_frame_in_a_hundred(self):
         """A block slides over a drawn plate to a stop that is a bare mesh of the same body: exact, then both."""

@@ -87,6 +87,23 @@ class ConformingTest(SceneTest):
                 # A step along the wall ends (v dt)^2 / 2 (R - r) deep.
                 self.assertLessEqual((np.hypot(pose[:, 0], pose[:, 1]) - 0.08).max(), 1.01 * 1e-6 / 0.16)
 
+    def test_what_slides_round_keeps_its_speed_whichever_is_higher(self):
+        for kind, inner, outer, step in (("puck", 0.06, 0.06, 1e-3), ("puck", 0.1, 0.06, 1e-3), ("puck", 0.1, 0.06, 5e-4),
+                                         ("puck", 0.05, 0.06, 2e-3), ("ring", 0.1, 0.04, 1e-3), ("ring", 0.04, 0.1, 1e-3),
+                                         ("ring", 0.04, 0.04, 1e-3), ("torus", 0.1, 0, 1e-3)):
+            with self.subTest(kind=kind, inner=inner, outer=outer, step=step):
+                _, twist, _ = self.run_scene("round.lua", "b", kind=kind, inner=inner, outer=max(outer, 0.01), timestep=step)
+                self.assertLessEqual(np.abs(np.linalg.norm(twist[:, :3], axis=1) - 1).max(), 1e-3)
+
+    def test_what_swings_round_keeps_its_amplitude(self):
+        for kind, inner, outer in (("puck", 0.12, 0.1), ("puck", 0.06, 0.1), ("ring", 0.1, 0.03), ("ring", 0.03, 0.1),
+                                   ("torus", 0.1, 0)):
+            with self.subTest(kind=kind, inner=inner, outer=outer):
+                pose, _, _ = self.run_scene("round.lua", "b", kind=kind, inner=inner, outer=max(outer, 0.01), swings="true",
+                                            duration=4)
+                angle = np.arctan2(pose[:, 0], -pose[:, 1])
+                self.assertAlmostEqual(np.abs(angle[-1000:]).max(), 0.3, delta=2e-4)
+
     def test_sections_with_bands_enter_their_holes_without_blows(self):
         kinds = ("oct", "hex", "square", "tri") if LONG else ("oct", "square")
         for c in (5e-6, 2e-5, 1e-4) if LONG else (2e-5,):

@@ -134,6 +134,41 @@ inline std::vector<Kind> sharp_seats() {
           {"rhombus", block - slit * moved(slit, kHere, {0, 0, pinned::kFullTurn / 9})}};
 }
 
+/// With ribs, pits, slots and holes of 1.5 to 4 mm, that a voxel may be wider than.
+inline std::vector<Kind> small_seats() {
+  const SolidPtr block = moved(box(0.04, 0.04, 0.01), {0, 0, -0.005});
+  const SolidPtr d_hole = cylinder(0.002, 0.03) - moved(box(0.004, 0.004, 0.03), {0.0035, 0, 0});
+  const SolidPtr key = cylinder(0.0015, 0.03) + moved(box(0.0012, 0.001, 0.03), {0.0017, 0, 0});
+  return {{"rib", block + box(0.002, 0.01, 0.0006)},
+          {"high_rib", block + box(0.0015, 0.008, 0.006)},
+          {"small_pit", block - box(0.0023, 0.002, 0.0026)},
+          {"long_pit", block - box(0.004, 0.0015, 0.004)},
+          {"thin_slot", block - box(0.0015, 0.08, 0.006)},
+          {"d_hole", block - d_hole},
+          {"key_hole", block - key},
+          {"small_hex", block - prism(6, 0.0015, 0.03)},
+          {"small_groove", block - moved(cylinder(0.0015, 0.08), kHere, {pinned::kFullTurn / 4, 0, 0})},
+          {"two_ribs",
+           block + moved(box(0.0015, 0.01, 0.003), {-0.0016, 0, 0}) + moved(box(0.0015, 0.01, 0.003), {0.0016, 0, 0})},
+          {"stud", block + cylinder(0.001, 0.004)}};
+}
+
+/// Of half the size or less.
+inline std::vector<Kind> small_bodies() {
+  return {
+      {"small_ball", ball(0.004)},
+      {"small_pin", cylinder(0.0012, 0.008)},
+      {"small_disc", cylinder(0.0045, 0.001)},
+      {"small_box", box(0.006, 0.0058, 0.0044)},
+      {"small_plate", box(0.01, 0.006, 0.001)},
+      {"small_prism3", prism(3, 0.002, 0.006)},
+      {"small_prism6", prism(6, 0.0025, 0.006)},
+      {"capsule", cylinder(0.0015, 0.006) + moved(ball(0.0015), {0, 0, 0.003}) + moved(ball(0.0015), {0, 0, -0.003})},
+      {"small_cone", cone(0.0, 0.003, 0.006)},
+      {"small_ring", torus(0.004, 0.001)},
+      {"small_keyed", cylinder(0.0013, 0.006) + moved(box(0.001, 0.0008, 0.006), {0.0015, 0, 0})}};
+}
+
 /// A kind with its part, loaded once.
 struct Loaded {
   std::string name;
@@ -153,8 +188,16 @@ struct DropScene {
   bool pressed = false;
 };
 
+/// Where a body begins above the seat, and what it is made of.
+struct DropRange {
+  double dt = 0.001;                       ///< s
+  double aside = 0.01;                     ///< m, of the seat's axis, at most
+  double low = 0.021, high = 0.026;        ///< m, above the seat
+  double voxel = 0.002, coarsest = 0.002;  ///< m, between these
+};
+
 /// Of even seeds the body falls, at up to 1 m/s when it begins; of odd ones a hand presses it down, held any way up.
-inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed, double dt = 0.001) {
+inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed, const DropRange& range = {}) {
   const RandomStream random(seed, "drop");
   const auto between = [&](std::uint64_t k, double low, double high) { return low + (high - low) * random.uniform(k); };
   DropScene result;
@@ -162,7 +205,7 @@ inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed
   Scene& scene = result.scene;
   scene.parameters.hybrid = hybrid::exact;
   scene.parameters.integrator = Integrator::implicit;
-  scene.parameters.timestep = dt;
+  scene.parameters.timestep = range.dt;
   scene.parameters.all_bodies_are_dynamic = true;
   scene.parameters.gravity = {0, 0, -9.81};
   scene.parameters.max_stiffness = 1000;
@@ -174,8 +217,9 @@ inline DropScene drop(const Loaded& body, const Loaded& seat, std::uint64_t seed
   above.name = "body";
   above.density = 2000;
   above.parts = {body.part};
-  below.voxel_size = above.voxel_size = 0.002;
-  above.X_WB.position = {between(0, -0.01, 0.01), between(1, -0.01, 0.01), between(2, 0.021, 0.026)};
+  below.voxel_size = above.voxel_size = between(14, range.voxel, range.coarsest);
+  above.X_WB.position = {between(0, -range.aside, range.aside), between(1, -range.aside, range.aside),
+                         between(2, range.low, range.high)};
   const Vector3d turn(between(3, -1, 1), between(4, -1, 1), between(5, -1, 1));
   above.X_WB.rotation = rotation_from_vector(3 * turn);
   if (!result.pressed) {
