@@ -71,7 +71,7 @@ if p.strategy ~= "path" then
     error = {p.approach * math.cos(side), p.approach * math.sin(side), 0}, angularError = {0, p.tilt, 0},
   }
 end
-way.name, way.tremor, way.angularTremor = "operator", p.tremor, 0.2 * p.tilt
+way.name, way.tremor, way.angularTremor = "operator", p.tremor, 0.2 * math.abs(p.tilt)
 
 local omni = Devices.Sensable.PhantomOmni{ name = "omni", scale = scale, forces = true, operator = Devices.Hand(way) }
 addDevice(omni)

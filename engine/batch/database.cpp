@@ -150,6 +150,11 @@ std::vector<std::string> Database::columns(const std::string& table) {
   return names;
 }
 
+void Database::settle() {
+  sqlite3_busy_timeout(database_, 0);
+  sqlite3_exec(database_, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr);
+}
+
 void Database::transaction(const std::function<void()>& work) {
   run("BEGIN IMMEDIATE");
   try {

@@ -59,6 +59,9 @@ class Database {
   [[nodiscard]] Statement prepare(const std::string& sql) { return Statement(database_, path_, sql); }
   [[nodiscard]] std::vector<std::string> columns(const std::string& table);
   /// All that `work` does is there, or nothing of it.
+  /// Nothing more will be written: whoever reads it need not write, either, not even beside it. If somebody reads
+  /// meanwhile it stays as it is.
+  void settle();
   void transaction(const std::function<void()>& work);
   [[nodiscard]] const std::string& path() const { return path_; }
 

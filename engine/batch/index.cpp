@@ -126,6 +126,31 @@ void Index::check_version(const std::string& version) {
   } catch (const ordered_json::exception&) {
     refuse_damaged(database_->path(), "no layout");
   }
+  check_tables();
+}
+
+/// What a reader takes for granted.
+void Index::check_tables() {
+  const std::string& path = database_->path();
+  const auto expect = [&](const std::string& table, const std::vector<std::string>& columns) {
+    const std::vector<std::string> there = database_->columns(table);
+    for (const std::string& column : columns)
+      if (std::find(there.begin(), there.end(), column) == there.end())
+        refuse_damaged(path, fmt::format("{} has no column {}", table, column));
+  };
+  expect("run", head_columns(layout_));
+  expect("run", figure_columns(layout_));
+  std::vector<std::string> timing{"run"};
+  for (const IndexColumn& column : layout_.timing) timing.push_back(column.name);
+  expect("timing", timing);
+  std::string known;
+  for (const char* status : kStatuses) known += fmt::format("{}'{}'", known.empty() ? "" : ", ", status);
+  const auto count = [&](const std::string& of) { return database_->value("SELECT count(*) FROM " + of); };
+  if (count("run WHERE status IS NULL OR status NOT IN (" + known + ")") != Cell(std::int64_t{0}))
+    refuse_damaged(path, "a run of no known status");
+  const Cell runs = count("run");
+  if (runs != count("timing") || runs != count("run JOIN timing USING (run)"))
+    refuse_damaged(path, "runs without their times");
 }
 
 void Index::make_tables(const std::string& version) {
@@ -173,10 +198,12 @@ std::vector<std::string> Index::inputs() {
   return names;
 }
 
-std::vector<std::uint64_t> Index::runs() {
+std::vector<std::uint64_t> Index::runs(std::uint64_t end) {
   std::vector<std::uint64_t> all;
   Statement statement = database_->prepare("SELECT run FROM run ORDER BY run");
   while (statement.step()) all.push_back(static_cast<std::uint64_t>(std::get<std::int64_t>(statement.column(0))));
+  if (!all.empty() && all.back() >= end)
+    refuse_damaged(database_->path(), fmt::format("run {} is none of its design", all.back()));
   return all;
 }
 
@@ -310,6 +337,7 @@ void Index::write_csv(const std::string& folder) {
   };
   write("index.csv", table_csv("run", columns));
   write("timing.csv", table_csv("timing", database_->columns("timing")));
+  database_->settle();
 }
 
 std::uint64_t Index::count(const std::string& status) {
@@ -336,16 +364,11 @@ std::uint64_t Index::count_without_run_file(bool of_done) {
 void Index::take_over(const std::string& path) {
   Index other(path, Database::Access::read);
   other.layout_ = layout_;
+  other.check_tables();
   const std::vector<std::string> measures = other.measure_columns();
   std::vector<std::pair<std::string, std::string>> units;
   for (const std::string& name : measures) units.emplace_back(name, other.unit_of(name));
   const std::vector<std::string> run = other.database_->columns("run"), timing = other.database_->columns("timing");
-  const auto expect = [&](const std::vector<std::string>& columns, const std::string& column) {
-    if (std::find(columns.begin(), columns.end(), column) == columns.end()) refuse_damaged(path, "no column " + column);
-  };
-  for (const auto& columns : {head_columns(layout_), figure_columns(layout_)})
-    for (const std::string& column : columns) expect(run, column);
-  for (const IndexColumn& column : layout_.timing) expect(timing, column.name);
   Answer inputs;
   Statement names = other.database_->prepare("SELECT name, sha256 FROM input");
   while (names.step()) inputs.inputs[plain_text(names.column(0))] = plain_text(names.column(1));

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ struct RowHead {
 class Index {
  public:
   /// Opens or makes the index. Error(input): of another format, or made by another version of the program, with the
-  /// remedy. Error(io).
+  /// remedy; or damaged: columns or rows are missing, a row has no status. Error(io).
   Index(const std::string& path, const Layout& layout, const std::string& version);
   /// Opens one that is there already, to be read. Error(input): there is none.
   [[nodiscard]] static Index open(const std::string& path, const std::string& version);
@@ -48,8 +49,8 @@ class Index {
   void expect_input(const std::string& name, const std::string& sha256);
   /// Names of the files that runs read.
   [[nodiscard]] std::vector<std::string> inputs();
-  /// The numbers of the runs that it holds, sorted.
-  [[nodiscard]] std::vector<std::uint64_t> runs();
+  /// The numbers of the runs that it holds, sorted. Error(input) if one is not below `end`.
+  [[nodiscard]] std::vector<std::uint64_t> runs(std::uint64_t end = std::numeric_limits<std::uint64_t>::max());
   /// A run's rows, in one transaction. Error(input): the run read another content of a file than a run before it, or
   /// its measures have names that SQL takes for one. Error(io).
   void add(const RowHead& head, const Answer& answer);
@@ -63,7 +64,7 @@ class Index {
 
   /// Rows of `run` in the order of runs, these columns of each.
   void read(const std::vector<std::string>& columns, const std::function<void(const std::vector<Cell>&)>& row);
-  /// index.csv and timing.csv, whole or not at all. Error(io).
+  /// index.csv and timing.csv, whole or not at all; the index is then ready to be read without a log. Error(io).
   void write_csv(const std::string& folder);
   /// Number of runs by status, and of those without an answer: all, or of one status.
   [[nodiscard]] std::uint64_t count(const std::string& status);
@@ -74,6 +75,7 @@ class Index {
  private:
   Index(const std::string& path, Database::Access access) : database_(std::make_unique<Database>(path, access)) {}
   void check_version(const std::string& version);
+  void check_tables();
   void make_tables(const std::string& version);
   std::string column_of(const Measure& measure);
   void add_inputs(const Answer& answer);

@@ -319,7 +319,7 @@ void Batch::compute() {
   say_what_was_not_kept();
   const InterruptScope until_the_index_is_whole;
   line_ = std::make_unique<ProgressLine>(!o_.quiet);
-  const std::vector<std::uint64_t> there = index_->runs();
+  const std::vector<std::uint64_t> there = index_->runs(design_.runs());
   std::size_t known = 0;
   std::uint64_t next = design_.shard.index - 1, done = 0;
   const std::uint64_t all = design_.runs(), wanted = design_.runs_of_shard() - there.size();

@@ -147,7 +147,12 @@ Answer refusal(const Error& error) {
   answer.status = error.kind() == ErrorKind::diverged ? "diverged" : "failed";
   answer.error = shown(error.what());
   // Lua's memory is bounded by the sandbox, whose text says so.
-  if (answer.error.find(" MiB of memory") != std::string::npos) answer.status = "memory";
+  const auto says = [&](const char* text) { return answer.error.find(text) != std::string::npos; };
+  if (says(" MiB of memory")) answer.status = "memory";
+  // What the process had too little of: with more of it there may be another answer.
+  if (!says("out of memory") && !says("Cannot allocate memory")) return answer;
+  answer.status = "memory";
+  answer.answered = false;
   return answer;
 }
 

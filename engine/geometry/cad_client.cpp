@@ -140,6 +140,12 @@ class Exchange {
 };
 
 [[noreturn]] void fail_crashed(const std::string& subject, int status) {
+  constexpr int kNotLoaded = 127;  // by the dynamic loader, as by shells
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotLoaded)
+    fail(ErrorKind::input,
+         "{}: verisim-cad cannot be loaded: out of memory, or a library is not installed; give it more memory, or see "
+         "packages.txt",
+         subject);
   const std::string how = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
                                               : fmt::format("exit code {}", WEXITSTATUS(status));
   fail(ErrorKind::input,

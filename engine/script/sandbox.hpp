@@ -6,6 +6,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <new>
 
 #include <algorithm>
 #include <cstddef>
@@ -166,6 +167,8 @@ int guarded(lua_State* L) {
   std::string text;
   try {
     return F(L);
+  } catch (const std::bad_alloc&) {
+    text = "out of memory";                // the process's: Lua's own is bounded and says so itself
   } catch (const std::exception& error) {  // never Lua's own exception: that is a pointer
     text = error.what();
   }

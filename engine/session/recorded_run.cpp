@@ -1,6 +1,7 @@
 #include "engine/session/recorded_run.hpp"
 
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 
@@ -98,9 +99,15 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
   loop.frames = simulation.frames_planned();
   loop.paced = options.paced;
   loop.empty_block = options.empty_block;
+  std::exception_ptr thrown;
   loop.finished = [&] {
-    const bool goes_on = !options.after_frame || options.after_frame();
-    return !goes_on || session.scenario->finished();
+    try {
+      const bool goes_on = !options.after_frame || options.after_frame();
+      return !goes_on || session.scenario->finished();
+    } catch (...) {  // the file is closed as one that was interrupted, then it goes on
+      thrown = std::current_exception();
+      return true;
+    }
   };
   RecordedRun run;
   {
@@ -115,6 +122,7 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
     run.loop = run_loop(simulation, recorder.get(), loop);
     run.loop.realtime_priority = priority.granted();
   }
+  if (thrown) run.loop.end = LoopEnd::interrupted;
   run.figures = figures_of(session, run.loop, file);
   if (options.progress) {
     print_warnings(run.loop.warnings);
@@ -123,6 +131,7 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
   }
   if (recorder && run.loop.end != LoopEnd::io_failed)
     recorder->close(to_attributes(run.figures), {{"state_hash", run.figures.state_hash}});
+  if (thrown) std::rethrow_exception(thrown);
   return run;
 }
 

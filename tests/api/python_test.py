@@ -3,6 +3,7 @@ import contextlib
 import io
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
-from program import SMALL, VERISIM, ProgramTest  # noqa: E402
+from program import SMALL, SOURCE, VERISIM, ProgramTest  # noqa: E402
 
 sys.path.insert(0, os.path.join(os.path.dirname(VERISIM), "python"))
 import verisim  # noqa: E402
@@ -70,6 +71,19 @@ class PythonModule(ProgramTest):
         self.assertEqual(data["state/links/wrench"].sizes["state/links/row"], len(run["state/links/pair"]))
         self.assertEqual(data["state/body/box/pose"].attrs["units"], "m, 1")
         self.assertEqual(data["time"].dims, ("frame",))
+        # Two widths of one name: a robot's pose on the floor has 3 numbers, a body's 7.
+        robot = verisim.run(os.path.join(SOURCE, "scenarios", "robot_gain.lua"), duration=0.02, out=self.path("r.h5"))
+        data = robot.to_xarray()
+        self.assertEqual(set(data.data_vars), {path.lstrip("/") for path in robot.fields})
+
+    def test_texts_that_are_damaged_are_failures(self):
+        self.run_small()
+        for name, text in (("parameters", b"{"), ("parameters", b"\xff\xfe"), ("scenario", b"\xff\xfe")):
+            damaged = shutil.copy(self.path("a.h5"), self.path(f"damaged{len(os.listdir(self.folder))}.h5"))
+            with h5py.File(damaged, "r+") as file:
+                file.attrs[name] = numpy.bytes_(text)
+            with self.assertRaisesRegex(verisim.Failure, "damaged.*the file is damaged"):
+                verisim.Run(damaged).parameters  # noqa: B018
 
     def test_each_frame_sees_what_is_recorded_and_may_end_the_run(self):
         seen = []
@@ -91,7 +105,8 @@ class PythonModule(ProgramTest):
 
         with self.assertRaisesRegex(KeyError, "mine"):
             self.run_small(each_frame=each_frame)
-        self.assertEqual(verisim.Run(self.path("a.h5")).frames, 20)
+        run = verisim.Run(self.path("a.h5"))
+        self.assertEqual((run.frames, run.summary["end"]), (20, "interrupted"))
 
     def test_bad_input_is_a_failure_that_says_what_to_do(self):
         for wanted, call in (

@@ -7,6 +7,7 @@ import sqlite3
 import unittest
 
 from batches import LIGHT, SANITIZED, Batches
+from program import SOURCE
 
 DESIGN = ["--vary", "speed=0.4,0.5", *LIGHT]
 
@@ -52,6 +53,8 @@ class Damaged(Batches):
         statements += [f"UPDATE meta SET value = '{value}' WHERE name = 'layout'"
                        for value in ("", "{}", "[]", '{"parameters":[{}],"figures":[],"timing":[]}')]
         statements += ["DELETE FROM meta", "ALTER TABLE run DROP COLUMN status", "ALTER TABLE timing DROP COLUMN answered"]
+        statements += ["UPDATE run SET status = 'x'", "UPDATE run SET status = NULL", "DELETE FROM timing", "INSERT INTO run (run, status) VALUES (77, 'done')",
+                       "ALTER TABLE run DROP COLUMN outcome"]
         for statement in statements[::4] if SANITIZED else statements:
             connection = sqlite3.connect(self.copy())
             connection.execute(statement)
@@ -94,6 +97,22 @@ class Damaged(Batches):
         self.assertEqual(self.batch("b", *DESIGN, "--keep", "failed").stderr, "")
         self.batch("k", *DESIGN, "--keep", "all")
         self.assertEqual(self.batch("k", *DESIGN, "--keep", "all").stderr, "")
+
+
+    def test_it_is_read_where_nothing_can_be_written(self):
+        self.assertFalse(os.path.exists(self.path("b/index.sqlite-wal")))
+        with open(self.path("b/index.sqlite"), "rb") as f:
+            self.assertEqual(f.read(20)[18:], b"\1\1", "no log is needed to read it")
+
+    @unittest.skipIf(SANITIZED, "shadow memory takes terabytes of address space")
+    def test_want_of_memory_is_no_fault_of_the_model(self):
+        scenario = os.path.join(SOURCE, "scenarios", "peg_in_hole.lua")
+        for limit in (30, 50, 70):
+            done = self.run_program("batch", scenario, "-o", self.path(f"m{limit}"), "--duration", 0.01, "--memory-limit", limit,
+                                    "--no-cache", "--json")
+            self.assertEqual(done.returncode, 1, (limit, done.stdout, done.stderr))
+            self.assertEqual(json.loads(done.stdout)["memory"], 1, (limit, done.stderr))
+            self.assertIn("--memory-limit", done.stderr)
 
 
 class Texts(Batches):

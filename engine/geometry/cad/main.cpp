@@ -108,8 +108,9 @@ std::pair<std::string, int> answer(const std::string& request) {
   } catch (const Error& error) {
     return failure(error.what(), error.kind());
   } catch (const std::bad_alloc&) {
-    return failure(path + ": the CAD kernel needs more memory than it may have (4 GB); simplify the model",
-                   ErrorKind::input);
+    return failure(
+        path + ": out of memory: the CAD kernel needs more than it may have; simplify the model, or allow more",
+        ErrorKind::input);
   } catch (...) {
     const std::string kernel = cad::describe_exception();
     return failure(fmt::format("{}: the CAD kernel fails ({}); the model is damaged or beyond it, export it again",

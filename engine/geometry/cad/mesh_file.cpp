@@ -13,6 +13,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <sstream>
 
 #include "engine/base/error.hpp"
@@ -136,6 +137,8 @@ std::vector<Part> read_mesh(const std::string& content, const Options& options) 
   importer.SetIOHandler(new NoOtherFiles);  // the importer owns it
   const aiScene* scene = importer.ReadFileFromMemory(
       content.data(), content.size(), aiProcess_Triangulate | aiProcess_ValidateDataStructure, format.c_str());
+  if (scene == nullptr && std::string(importer.GetErrorString()).find("bad_alloc") != std::string::npos)
+    throw std::bad_alloc();
   if (scene == nullptr || scene->mRootNode == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
     fail(ErrorKind::input,
          "{}: it cannot be read as {} ({}); it is truncated, damaged or of another format, export it again", path,

@@ -5,6 +5,7 @@ import shutil
 import signal
 import sqlite3
 import subprocess
+import urllib.parse
 import warnings
 
 from ._verisim import Failure
@@ -25,7 +26,9 @@ class Batch:
 
     def rows(self, query="SELECT * FROM run ORDER BY run"):
         """A dict per run, or what else the query asks for (tables run, timing, unit)."""
-        database = sqlite3.connect(f"file:{self._index}?mode=rw", uri=True)
+        # With a log beside it somebody may be writing; without one nothing need be written to read.
+        mode = "mode=ro" if os.path.exists(self._index + "-wal") else "mode=ro&immutable=1"
+        database = sqlite3.connect(f"file:{urllib.parse.quote(self._index)}?{mode}", uri=True)
         try:
             database.row_factory = sqlite3.Row
             return [dict(row) for row in database.execute(query)]

@@ -2,7 +2,7 @@
 import json
 import os
 
-from ._verisim import RunFile
+from ._verisim import Failure, RunFile
 
 
 class Run:
@@ -15,17 +15,26 @@ class Run:
         self._file = RunFile(os.fspath(path))
         self._read = {}
         self.fields = {field.path: field for field in self._file.fields()}
-        self.attributes = self._file.attributes
-        self.summary = self._file.summary
+        try:
+            self.attributes, self.summary = self._file.attributes, self._file.summary
+        except UnicodeDecodeError as error:
+            raise Failure(f"{os.fspath(path)}: a text in it is no UTF-8; the file is damaged, simulate again") from error
         self.figures = figures
         self.warnings = list(warnings)
         self.error = error
 
-    parameters = property(lambda self: json.loads(self.attributes["parameters"]), doc="of the scenario, as resolved")
     path = property(lambda self: self._file.path)
     frames = property(lambda self: self._file.frames)
     events = property(lambda self: self._file.events(), doc="time [s], kind and text of each")
     pairs = property(lambda self: self._file.pairs(), doc="of bodies that met; /state/links/pair counts them from 0")
+
+    @property
+    def parameters(self):
+        """Of the scenario, as resolved."""
+        try:
+            return json.loads(self.attributes["parameters"])
+        except (KeyError, ValueError) as error:
+            raise Failure(f"{self.path}: its parameters cannot be read; the file is damaged, simulate again") from error
 
     def __getitem__(self, path):
         path = "/" + path.lstrip("/")
@@ -78,7 +87,7 @@ class Run:
             dims = ["frame" if field.of_frames else os.path.dirname(name) + "/row"]
             if field.width > 1:
                 component = os.path.basename(name)  # pose, wrench …: one dimension for all of one width
-                dims.append(component if widths.setdefault(component, field.width) == field.width else name)
+                dims.append(component if widths.setdefault(component, field.width) == field.width else f"{component}_{field.width}")
                 if len(field.names) == field.width:
                     coordinates[dims[1]] = field.names
             variables[name] = (dims, self[path], {"units": field.units, "long_name": field.meaning})
