@@ -57,7 +57,7 @@ void Simulation::step() {
   s.passivity.bound(world, s.contacts, s.methods, s.response, s.exact, s.energy.ledger());
   s.motion.advance(world, s.response, s.exact, s.passivity, s.energy.ledger());
   s.reactions.find(world, s.contacts, s.response, s.exact, s.motion);
-  s.tunnelling.watch(world, notes);
+  s.tunnelling.watch(world, s.methods, notes);
   s.sinking.watch(world, s.contacts, s.exact, s.reactions, notes);
   s.pair_energy.watch(world, s.contacts, s.exact, s.reactions, s.motion, notes);
   timer.done(Stage::motion);

@@ -64,6 +64,23 @@ TEST(Tunnelling, IsNotOfWhatOnlySpins) {
   EXPECT_TRUE(events_of(scene, "tunnelling").empty());
 }
 
+// The plate is 20 mm thick. Voxels push what has passed its middle out on the other side.
+TEST(Tunnelling, IsToldOfWhatIsThinForTheSpeedOfOthers) {
+  const auto told = [](double speed) {
+    Scene scene = scenes::falling_boxes(1, Integrator::implicit);
+    scene.parameters.gravity = Vector3d::Zero();
+    scene.parameters.duration = 0.005;
+    scene.bodies[1].twist.linear = {0, 0, -speed};
+    return events_of(scene, "tunnelling");
+  };
+  EXPECT_TRUE(told(9.9).empty());
+  ASSERT_EQ(told(10.1).size(), 1U);
+  EXPECT_EQ(
+      told(10.1)[0].text,
+      "'box0' moves 0.0101 m in a step to 'plate', which is 0.02 m thick there: its voxels may let it pass; use a "
+      "smaller timestep, or hybrid = \"exact\"");
+}
+
 /// A box on a plate that begins `depth` inside of it, in peace: what pushes it out comes from nowhere.
 Scene overlapping(double depth, Integrator integrator) {
   Scene scene = scenes::falling_boxes(1, integrator);

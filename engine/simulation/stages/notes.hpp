@@ -22,12 +22,12 @@ struct Note {
 
 class Notes {
  public:
-  /// Between frames. What a frame may have to say: four things of every body, two of every link, both ends of a grasp
+  /// Between frames. What a frame may have to say: five things of every body, two of every link, both ends of a grasp
   /// of every hand and of the hand that it takes from, a coupling that turns round, what devices and companions report,
   /// and what found no room.
   void make_room(const World& world, std::size_t links) {
     constexpr std::size_t kOthers = 64;
-    notes_.reserve(4 * world.bodies.size() + 2 * links + (6 + PartNotes::kMax) * world.hands.size() +
+    notes_.reserve(5 * world.bodies.size() + 2 * links + (6 + PartNotes::kMax) * world.hands.size() +
                    PartNotes::kMax * world.companions.size() + kOthers);
   }
   /// No allocation within that room.
