@@ -220,7 +220,7 @@ std::vector<std::string> broken_promises(const std::vector<StabilityRow>& rows) 
 }
 
 void check_folder(const std::string& folder, bool force) {
-  make_folder_of(folder + "/any");
+  make_folder_of(folder + "/any", folder);
   for (const char* name : {"stability.json", "maps.csv", "extremes.csv", "ledgers.csv"})
     (void)place_of(folder, name, force);
   for (const MapDescription& map : stability::map_descriptions()) (void)place_of(folder, map.name + ".svg", force);

@@ -33,8 +33,9 @@
 //                   has rows at its ends too. If the closest place has little weight, the candidate of the largest
 //                   weight has a row too.
 //   Hollows         A rim that slides round within a hollow, or a hollow one round a pin, has the row of its closest
-//                   place alone: one beside it would brake. Where the hollow is hardly wider, the closest place passes much of it within a step: all of
-//                   the rim's groups have rows, and a ball or a corner has rows all round (conforming_normals.hpp).
+//                   place alone: one beside it would brake. Where the hollow is hardly wider, the closest place passes
+//                   much of it within a step: all of the rim's groups have rows, and a ball or a corner has rows all
+//                   round (conforming_normals.hpp).
 //   Own face        A ball that a curve carries touches only where the curve is closest; within the step that may be
 //                   another place than now.
 //   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25

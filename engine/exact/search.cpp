@@ -192,8 +192,7 @@ bool Search::is_near(const PlacedFeature& placed, std::uint32_t count, Candidate
 /// Is the candidate's place the end of a segment beyond which the curve goes on?
 bool Search::is_between(const PlacedFeature& placed, const Candidate& c) const {
   const Feature& feature = *placed.feature;
-  return feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width &&
-         feature.goes_on(c.sample, c.place.t);
+  return feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width && feature.goes_on(c.sample, c.place.t);
 }
 
 /// True if the curve rolls round within a hollow face, or as a hollow one round a face, its closest place lies in

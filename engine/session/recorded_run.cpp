@@ -72,12 +72,13 @@ OpenRecorder open_recorder(const Session& session, const RecordOptions& options,
 
 }  // namespace
 
-void make_folder_of(const std::string& file) {
+void make_folder_of(const std::string& file, const std::string& named) {
   const fs::path folder = fs::path(file).parent_path();
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
   if (error)
-    fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", folder.string(), error.message());
+    fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", named.empty() ? file : named,
+         error.message());
 }
 
 RecordedRun record_run(Session& session, const RecordOptions& options) {

@@ -28,8 +28,8 @@ struct RecordedRun {
 /// may not be replaced (record/output_place.hpp), or if the planned frames would not fit the free disk.
 [[nodiscard]] RecordedRun record_run(Session& session, const RecordOptions& options);
 
-/// Creates the folder of a file to be written if it does not exist. Error(io).
-void make_folder_of(const std::string& file);
+/// Creates the folder of a file to be written if it does not exist. Error(io) that names the file, or what is `named`.
+void make_folder_of(const std::string& file, const std::string& named = {});
 
 /// The documented exit code of a loop's end.
 [[nodiscard]] int exit_code_of(LoopEnd end);
