@@ -68,7 +68,8 @@ void declare_links(const World& world, const Stages& stages, Columns& columns) {
       constraint_names);
   add("alignment", "1", "alignment alpha of that constraint",
       [&stages](std::size_t l) { return stages.methods.look_ups(l).alpha; });
-  add("max_penetration", "m", "deepest contact", [&stages](std::size_t l) { return depth_of(stages, l); });
+  add("max_penetration", "m", "deepest contact when the step began: of the poses of the row before",
+      [&stages](std::size_t l) { return depth_of(stages, l); });
   add("wrench", "N, N m", "on the second body by the first as applied, about the second's centre of mass; world",
       [&stages](std::size_t l) { return stages.reactions.on_second(l); });
 }
