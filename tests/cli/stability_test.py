@@ -130,6 +130,9 @@ class Everything(ProgramTest):
         tree = ElementTree.parse(self.path("maps/body-on-wall.svg"))
         dots = tree.findall(".//{http://www.w3.org/2000/svg}circle")
         self.assertEqual(len(dots), 3 + len(cells))
+        with open(self.path("maps/maps.csv"), newline="") as f:
+            columns = next(csv.reader(f))
+        self.assertEqual(len(columns), len(set(columns)), columns)
 
     def rows(self, only, *arguments):
         done = self.run_program("stability", "--only", only, "--json", "--quiet", *arguments)
