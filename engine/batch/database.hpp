@@ -14,6 +14,7 @@ struct sqlite3_stmt;
 
 namespace verisim::batch {
 
+/// Error(input): the index is to be moved away and made again.
 [[noreturn]] void refuse_damaged(const std::string& path, const std::string& cause);
 
 /// "NAME" as an identifier of SQL.
@@ -59,10 +60,10 @@ class Database {
   [[nodiscard]] Statement prepare(const std::string& sql) { return Statement(database_, path_, sql); }
   [[nodiscard]] std::vector<std::string> columns(const std::string& table);
   /// All that `work` does is there, or nothing of it.
-  /// Nothing more will be written: whoever reads it need not write, either, not even beside it. If somebody reads
-  /// meanwhile it stays as it is.
-  void settle();
   void transaction(const std::function<void()>& work);
+  /// Nothing more will be written for now: readers need not write, either, not even a log beside it. While somebody
+  /// reads it stays as it is.
+  void settle();
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:

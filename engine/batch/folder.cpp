@@ -94,10 +94,6 @@ void clear_half_merged(const std::string& folder) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// Does it have what a merge and a summary read of it?
 bool is_manifest(const ordered_json& json) {
   const auto has = [&](const char* name, auto is) { return json.contains(name) && is(json[name]); };

@@ -36,7 +36,7 @@ class Folder {
 /// The index of a batch's folder: index.sqlite.
 [[nodiscard]] std::string index_of(const std::string& folder);
 
-inline constexpr int kManifestFormat = 1;
+inline constexpr int kManifestFormat = 1;  ///< format_version of batch.json
 
 /// batch.json of a folder. Error(input): there is none, or it is something else.
 [[nodiscard]] nlohmann::ordered_json read_any_manifest(const std::string& folder);

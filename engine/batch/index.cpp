@@ -250,8 +250,7 @@ void Index::add_inputs(const Answer& answer) {
       if (before != sha256)
         fail(ErrorKind::input,
              "{}: was changed since the batch began: its runs would not be of one scenario; put the former content "
-             "back, "
-             "or name another folder with -o",
+             "back, or name another folder with -o",
              shown(name));
       continue;
     }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +16,7 @@
 #include "engine/record/output_place.hpp"
 #include "engine/session/json_text.hpp"
 #include "engine/session/origin.hpp"
+#include "engine/session/recorded_run.hpp"
 #include "engine/tradeoff/bounds.hpp"
 #include "engine/tradeoff/peers.hpp"
 
@@ -60,9 +60,7 @@ struct Places {
 };
 Places places_in(const std::string& folder, bool force) {
   if (folder.empty()) return {};
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail(ErrorKind::io, "{}: the folder cannot be made ({}); choose another with -o", folder, error.message());
+  make_folder_of(folder + "/any", folder);
   Places places = {folder + "/tradeoff.json", folder + "/tradeoff.csv", folder + "/tradeoff.svg"};
   (void)check_output({places.json, OutputKind::text, force, kJsonBegin});
   (void)check_output({places.csv, OutputKind::text, force, "setting,"});

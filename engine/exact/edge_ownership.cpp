@@ -1,5 +1,8 @@
 #include "engine/exact/edge_ownership.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/exact/edge_crossing.hpp"
@@ -28,8 +31,8 @@ Vector3d nearest_on(const ExactEdge& edge, const Vector3d& foot) {
   return edge.center + std::clamp(edge.direction.dot(foot - edge.center), -edge.half, edge.half) * edge.direction;
 }
 
-/// True if a place lies behind the face across a concave edge, within the edge's extent and no farther: beyond its end
-/// the face goes on.
+/// True if a place lies behind the face across a concave edge by more than `more` [m], and within the edge's extent:
+/// beyond its end the face goes on.
 bool is_behind(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance, double more) {
   return distance < -more && edge.limits_face_at(face, p, 0);
 }

@@ -105,7 +105,9 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
     try {
       const bool goes_on = !options.after_frame || options.after_frame();
       return !goes_on || session.scenario->finished();
-    } catch (...) {  // the file is closed as one that was interrupted, then it goes on
+    } catch (const Error&) {  // the loop's to judge
+      throw;
+    } catch (...) {  // the file is closed as one that was interrupted; then it is thrown on
       thrown = std::current_exception();
       return true;
     }
@@ -123,7 +125,7 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
     run.loop = run_loop(simulation, recorder.get(), loop);
     run.loop.realtime_priority = priority.granted();
   }
-  if (thrown) run.loop.end = LoopEnd::interrupted;
+  if (thrown && run.loop.end != LoopEnd::io_failed) run.loop.end = LoopEnd::interrupted;
   run.figures = figures_of(session, run.loop, file);
   if (options.progress) {
     print_warnings(run.loop.warnings);

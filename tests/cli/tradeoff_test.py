@@ -291,9 +291,10 @@ class AutoKeepsItsBounds(ProgramTest):
 
     PATIENCE = 3600 if LONG else 300
     # N, us: the pin jams in some trials, and its force is then chaotic. Which of the settings that keep the error is
-    # chosen hangs on measured times. Three trials bound three of four further ones, so the short form asks for an error
-    # that each of the four settings with precise geometry keeps in its six trials (2.4 N at most), and voxels do not.
-    ERROR, BUDGET = 2 if LONG else 3, 100
+    # chosen hangs on measured times, and three trials bound three of four further ones: so the error that is asked for
+    # is one that each of the four with precise geometry keeps in the short form's six trials (2.8 N was the most), and
+    # voxels alone do not in those of the table (6.4 N and more).
+    ERROR, BUDGET = 4, 100
 
     def setUp(self):
         super().setUp()

@@ -51,7 +51,7 @@ void Tunnelling::watch(const World& world, const PairMethods& methods, Notes& no
 void Tunnelling::watch_pairs(const World& world, const PairMethods& methods, Notes& notes) {
   constexpr double kMiddle = 0.5;
   for (const std::size_t l : world.near_links) {
-    if (methods.is_precise(l)) continue;
+    if (!methods.needs_voxels(l)) continue;
     const Link& link = world.links[l];
     const auto velocity = [&](std::size_t i) {
       return world.moves(world.bodies[i]) ? world.bodies[i].rigid.v_C : Vector3d(Vector3d::Zero());
