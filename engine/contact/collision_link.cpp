@@ -11,11 +11,21 @@ namespace {
 
 /// Fraction of the budget that is used: the rule assumes a constant W, but W changes within a step.
 constexpr double kSafety = 0.8;
+constexpr double kStabilityBudget = 4;
 
 /// Upper bound of the largest eigenvalue of M^-1 W: the Frobenius norm of M^-1/2 W M^-1/2 = sqrt(trace((M^-1 W)^2)).
 double bound_of(const Matrix6d& inverse_mass, const Matrix6d& W) {
   const Matrix6d P = inverse_mass * W;
   return std::sqrt(std::max(0.0, P.cwiseProduct(P.transpose()).sum()));
+}
+
+/// The smaller of the parts of the stability budget that the bodies have which move.
+double budget_of(const LinkBody& first, const LinkBody& second) {
+  double budget = kStabilityBudget;
+  for (const LinkBody* body : {&first, &second})
+    if (!body->inverse_mass.isZero(0)) budget = std::min(budget, body->budget);
+  VERISIM_ASSERT(budget > 0);
+  return budget;
 }
 
 /// J of a contact about another point: torque arms grow by `shift` (new arm = old arm + shift), so J' = T J.
@@ -50,6 +60,19 @@ bool are_covered(const Pointshell& shell) {
 }
 
 }  // namespace
+
+/// Where springs press: sums over them, each by how far it is pressed.
+struct CollisionLink::PressureSum {
+  double sum = 0, squares = 0;
+  Vector3d weighed = Vector3d::Zero();
+  void add(double pressed, const Vector3d& at) {
+    sum += pressed;
+    weighed += pressed * at;
+    squares += pressed * at.squaredNorm();
+  }
+  [[nodiscard]] Vector3d middle() const { return weighed / sum; }
+  [[nodiscard]] double radius() const { return std::sqrt(std::max(0.0, squares / sum - middle().squaredNorm())); }
+};
 
 CollisionLink::CollisionLink(const VoxelBody& first, const VoxelBody& second)
     : first_is_map_(second.shell.size() <= first.shell.size()) {
@@ -96,6 +119,7 @@ void CollisionLink::follow_motion() {
   const Matrix3d turned = Matrix3d::Identity() - back.rotation.toRotationMatrix();
   const Vector3d moved = turned * map_->origin - back.position;
   ContactList& c = contacts_;
+  PressureSum pressure;
   for (std::uint32_t i = 0; i < c.size; ++i) {
     const std::uint32_t p = c.point[i];
     const double depth = c.depth[i];
@@ -108,8 +132,20 @@ void CollisionLink::follow_motion() {
     deepest_ = std::max(deepest_, depth);
     depth_before_[p] = c.depth[i] = static_cast<float>(std::clamp(began + way_in, 0.0, depth));
     met_in_[p] = queries_;
+    pressure.add(c.depth[i], Vector3d(c.x[i], c.y[i], c.z[i]));
   }
+  follow_patch(pressure, turned, moved);
   stiffness_before_ = stiffness_;
+}
+
+/// @param turned, moved  what lies at x, relative to the grid's origin, came `turned x + moved` since the query before
+void CollisionLink::follow_patch(const PressureSum& pressure, const Matrix3d& turned, const Vector3d& moved) {
+  if (!(pressure.sum > 0)) return;
+  if (pressed_in_ + 1 != queries_) grip_.let_go();
+  pressed_in_ = queries_;
+  patch_ = {pressure.middle(), pressure.radius(), turned * pressure.middle() + moved,
+            0.5 * Vector3d(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1))};
+  grip_.follow(patch_);
 }
 
 void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
@@ -130,12 +166,10 @@ void CollisionLink::choose_stiffness(const LinkBody& first, const LinkBody& seco
   const double lambda =
       bound_of(points.inverse_mass, W_points) + bound_of(map.inverse_mass, T * W_points * T.transpose());
   const double zeta = parameters.damping_ratio;
+  dt_ = dt;
   stiffness_ = parameters.stiffness_max;
   if (parameters.stabilize && lambda > 0) {
-    double budget = 4;
-    if (!points.inverse_mass.isZero(0)) budget = std::min(budget, points.budget);
-    if (!map.inverse_mass.isZero(0)) budget = std::min(budget, map.budget);
-    VERISIM_ASSERT(budget > 0);
+    const double budget = budget_of(first, second);
     // With y = dt sqrt(k lambda) and b = 2 zeta sqrt(k / lambda), k dt^2 lambda + 2 b dt lambda is y^2 + 4 zeta y.
     const double y = std::sqrt(4 * zeta * zeta + kSafety * budget) - 2 * zeta;
     stiffness_ = std::min(stiffness_, y * y / (dt * dt * lambda));
@@ -159,10 +193,14 @@ void CollisionLink::respond(const LinkBody& first, const LinkBody& second, const
   apply_penalty(contacts_, about_, relative_twist(first, second), stiffness_, damping_);
 }
 
-void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices, LinkSides& sides) {
+void CollisionLink::sum_up(const LinkBody& first, const LinkBody& second, LinkSides& sides) {
   sides = LinkSides();
   if (contacts_.size == 0) return;
-  give_to_both(first, second, sum(contacts_, about_), with_matrices, sides);
+  const ContactSum total = sum(contacts_, about_);
+  depth_max_ = std::max(total.depth_max, deepest_);
+  Wrench on_points = total.wrench;
+  hold(first, second, on_points);
+  give_wrench(first, second, on_points, sides);
 }
 
 void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters,
@@ -171,32 +209,54 @@ void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& secon
   if (contacts_.size == 0) return;
   choose_stiffness(first, second, parameters, dt);
   if (parameters.from_touch) follow_motion();
-  const Twist relative = relative_twist(first, second);
-  give_to_both(first, second, penalty_sum(contacts_, about_, relative, stiffness_, damping_), true, sides);
+  give_pushing(first, second, pushing(contacts_, about_, relative_twist(first, second), stiffness_, damping_), sides);
 }
 
-void CollisionLink::give_to_both(const LinkBody& first, const LinkBody& second, const ContactSum& total,
-                                 bool with_matrices, LinkSides& sides) {
+/// Of the points' body relative to the map's, where relative_twist is: change of that twist by an impulse.
+Matrix6d CollisionLink::mobility(const LinkBody& first, const LinkBody& second) const {
+  const LinkBody& map = first_is_map_ ? first : second;
+  const LinkBody& points = first_is_map_ ? second : first;
+  const Matrix6d T = shift_of_arm(points.p_WC - map.p_WC);
+  const Matrix6d both = points.inverse_mass + T.transpose() * map.inverse_mass * T;
+  return rotated(both, map.X_WB.rotation.toRotationMatrix().transpose());
+}
+
+Grip::Matrices CollisionLink::hold(const LinkBody& first, const LinkBody& second, Wrench& on_points) {
+  if (pressed_in_ != queries_) return {};
+  return grip_.hold({patch_.middle - about_, patch_.radius, relative_twist(first, second), mobility(first, second),
+                     budget_of(first, second), dt_},
+                    on_points);
+}
+
+void CollisionLink::give_wrench(const LinkBody& first, const LinkBody& second, const Wrench& on_points,
+                                LinkSides& sides) const {
+  const LinkBody& map = first_is_map_ ? first : second;
+  const LinkBody& points = first_is_map_ ? second : first;
+  LinkSide& points_side = first_is_map_ ? sides.second : sides.first;
+  LinkSide& map_side = first_is_map_ ? sides.first : sides.second;
+  const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
+  points_side.wrench = {R_WM * on_points.force, R_WM * on_points.torque};
+  map_side.wrench = reaction(points_side.wrench, points.p_WC, map.p_WC);
+}
+
+void CollisionLink::give_pushing(const LinkBody& first, const LinkBody& second, const Pushing& contacts,
+                                 LinkSides& sides) {
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;
   LinkSide& on_points = first_is_map_ ? sides.second : sides.first;
   LinkSide& on_map = first_is_map_ ? sides.first : sides.second;
+  depth_max_ = std::max(contacts.sum.depth_max, deepest_);
+  Wrench total = contacts.sum.wrench;
+  const Grip::Matrices held = hold(first, second, total);
+  give_wrench(first, second, total, sides);
+
   const Matrix3d R_WM = map.X_WB.rotation.toRotationMatrix();
-  const Vector3d arm = points.p_WC - map.p_WC;
-
-  depth_max_ = std::max(total.depth_max, deepest_);
-  on_points.wrench = {R_WM * total.wrench.force, R_WM * total.wrench.torque};
-  on_map.wrench = reaction(on_points.wrench, points.p_WC, map.p_WC);
-  if (!with_matrices) return;
-
-  const Matrix6d W_points = rotated(W_, R_WM);
-  const Matrix6d T = shift_of_arm(arm);
-  const Matrix6d W_map = T * W_points * T.transpose();
-  on_points.stiffness = stiffness_ * W_points;
-  on_points.damping = damping_ * W_points;
+  const Matrix6d T = shift_of_arm(points.p_WC - map.p_WC);
+  on_points.stiffness = rotated(stiffness_ * contacts.W + held.stiffness * held.across, R_WM);
+  on_points.damping = rotated(damping_ * contacts.W + held.damping * held.across, R_WM);
   on_points.drift = on_points.stiffness * twist_at(map, points.p_WC);
-  on_map.stiffness = stiffness_ * W_map;
-  on_map.damping = damping_ * W_map;
+  on_map.stiffness = T * on_points.stiffness * T.transpose();
+  on_map.damping = T * on_points.damping * T.transpose();
   on_map.drift = on_map.stiffness * twist_at(points, map.p_WC);
 }
 

@@ -11,12 +11,14 @@
 // spring of a point is pressed by what the point has come inwards along its contact's normal since it touched (in the
 // first frame: in that frame), and never by more than the depth (PenaltyParameters::from_touch). It gives back what it
 // was given. Where the stability rule changes the stiffness, the springs keep their forces. Reported depths are those
-// of the places. Contacts of triangles (find_by_triangles) have no memory: their depths are of a continuous surface.
+// of the places. Where springs press, a little friction holds what may rest (grip.hpp).
+// Contacts of triangles (find_by_triangles) have no memory, and no friction: their depths are of a continuous surface.
 #pragma once
 
 #include <cstdint>
 
 #include "engine/base/pose.hpp"
+#include "engine/contact/grip.hpp"
 #include "engine/contact/mesh_query.hpp"
 #include "engine/contact/penalty.hpp"
 #include "engine/contact/query.hpp"
@@ -30,8 +32,7 @@ struct LinkBody {
   Vector3d p_WC;          ///< centre of mass
   Twist twist;            ///< of the centre of mass
   Matrix6d inverse_mass;  ///< world coordinates; zero for a body that does not move
-  double budget = 0;  ///< part of the stability budget of 4 for this link; unused if the body does not move, or if no
-                      ///< rule is applied
+  double budget = 4;      ///< part of the stability budget for what this link does at the start of a step; all: 4
 };
 
 struct PenaltyParameters {
@@ -73,11 +74,13 @@ class CollisionLink {
 
   /// Response, part one: sets the stiffness by the stability rule and the penalty force of every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
-  /// Response, part two: sums what the contacts' forces now are; with matrices, also stiffness, damping and drift, else
-  /// these are zero.
-  void sum_up(const LinkBody& first, const LinkBody& second, bool with_matrices, LinkSides& sides);
-  /// Both parts in one pass, with matrices, if methods have changed normals only. Forces of single contacts are not
-  /// stored.
+  /// Response, part two: sums what the contacts' forces now are. No matrices.
+  void sum_up(const LinkBody& first, const LinkBody& second, LinkSides& sides);
+
+  // For an implicit step, in which only one of the bodies moves. Methods may have changed normals. Forces of single
+  // contacts are not stored.
+
+  /// Both parts in one pass, with matrices.
   void respond_at_once(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt,
                        LinkSides& sides);
 
@@ -91,13 +94,20 @@ class CollisionLink {
  private:
   /// Replaces each contact's depth by how far its spring is pressed (see above).
   void follow_motion();
+  struct PressureSum;
+  void follow_patch(const PressureSum& pressure, const Matrix3d& turned, const Vector3d& moved);
   /// Sets W_, stiffness_ and damping_.
   void choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
   /// Twist of the points' body relative to the map's, at the centre of the points' body, axes of the map's.
   [[nodiscard]] Twist relative_twist(const LinkBody& first, const LinkBody& second) const;
-  /// Transforms the sum, which is on the points' body in axes of the map's, into both sides of the response.
-  void give_to_both(const LinkBody& first, const LinkBody& second, const ContactSum& total, bool with_matrices,
-                    LinkSides& sides);
+  /// Of the points' body relative to the map's: what an impulse changes that twist by.
+  [[nodiscard]] Matrix6d mobility(const LinkBody& first, const LinkBody& second) const;
+  /// Adds what the grip does to the contacts' wrench on the points' body.
+  Grip::Matrices hold(const LinkBody& first, const LinkBody& second, Wrench& on_points);
+  /// A wrench on the points' body, axes of the map's, becomes that on both.
+  void give_wrench(const LinkBody& first, const LinkBody& second, const Wrench& on_points, LinkSides& sides) const;
+  /// With the matrices of both.
+  void give_pushing(const LinkBody& first, const LinkBody& second, const Pushing& contacts, LinkSides& sides);
 
   const Voxmap* map_;
   const Pointshell* shell_;
@@ -110,6 +120,10 @@ class CollisionLink {
   std::uint64_t queries_ = 0;
   Pose X_MP_, X_MP_before_;  ///< of the points' body in the map's, in this query and in the one before
   double stiffness_before_ = 0;
+  Grip grip_;
+  Grip::Patch patch_;             ///< in axes of the map's body, relative to its grid's origin
+  std::uint64_t pressed_in_ = 0;  ///< query in which any spring was pressed
+  double dt_ = 0;
   double deepest_ = 0;             ///< m, of the places, not of the springs
   Matrix6d W_ = Matrix6d::Zero();  ///< about the points' body's centre of mass, axes of the map's body
   Vector3d about_ = Vector3d::Zero();

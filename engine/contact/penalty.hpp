@@ -30,9 +30,15 @@ struct ContactSum {
 };
 [[nodiscard]] ContactSum sum(const ContactList& contacts, const Vector3d& about);
 
-/// apply_penalty and sum in one pass. Single forces are neither stored nor rounded to single precision.
+/// What apply_penalty and sum would give, and W of the contacts that push: their force changes with the motion. One
+/// that does not push does not resist, for it would not pull.
+struct Pushing {
+  ContactSum sum;
+  Matrix6d W = Matrix6d::Zero();
+};
+/// In one pass. Single forces are neither stored nor rounded to single precision.
 /// @pre stiffness >= 0, damping >= 0
-[[nodiscard]] ContactSum penalty_sum(const ContactList& contacts, const Vector3d& about, const Twist& velocity,
-                                     double stiffness, double damping);
+[[nodiscard]] Pushing pushing(const ContactList& contacts, const Vector3d& about, const Twist& velocity,
+                              double stiffness, double damping);
 
 }  // namespace verisim

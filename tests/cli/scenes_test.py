@@ -146,12 +146,12 @@ class Scenes(ProgramTest):
 
 
 GOLDEN = [
-    ("peg_in_hole", ["--duration", "3"], "f527f89554cead25"),
-    ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "b5a1df3b00a7e5f1"),
-    ("peg_in_hole_step", ["--duration", "3"], "1c11014ac055c939"),
+    ("peg_in_hole", ["--duration", "3"], "7cdec37d33ec6a8c"),
+    ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "4bbc85249db629e9"),
+    ("peg_in_hole_step", ["--duration", "3"], "bdf098e6627aed65"),
     ("head_tracking", [], "075ada692eabd59b"),
-    ("slide", [], "66f7220e9ed64da6"),
-    ("stack", [], "ed20b4e647556a2d"),
+    ("slide", [], "f39e8a0886e200d2"),
+    ("stack", [], "b2c06a22cbdf48ac"),
 ]
 
 if __name__ == "__main__":

@@ -98,13 +98,13 @@ TEST(PenaltyDeathTest, ReadsWithinItsColumnsAndPushes) {
   const Vector3d o = Vector3d::Zero();
   EXPECT_BROKEN(apply_penalty(contacts, o, {}, -1, 0), "stiffness >= 0");
   EXPECT_BROKEN(apply_penalty(contacts, o, {}, 1, kNaN), "damping >= 0");
-  EXPECT_BROKEN(penalty_sum(contacts, o, {}, kNaN, 0), "stiffness >= 0");
-  EXPECT_BROKEN(penalty_sum(contacts, o, {}, 1, -1), "damping >= 0");
+  EXPECT_BROKEN(pushing(contacts, o, {}, kNaN, 0), "stiffness >= 0");
+  EXPECT_BROKEN(pushing(contacts, o, {}, 1, -1), "damping >= 0");
   contacts.size = 9;
   EXPECT_BROKEN(contact_matrix(contacts, o), "contacts.size <= contacts.capacity()");
   EXPECT_BROKEN(apply_penalty(contacts, o, {}, 1, 0), "contacts.size <= contacts.capacity()");
   EXPECT_BROKEN(sum(contacts, o), "contacts.size <= contacts.capacity()");
-  EXPECT_BROKEN(penalty_sum(contacts, o, {}, 1, 0), "contacts.size <= contacts.capacity()");
+  EXPECT_BROKEN(pushing(contacts, o, {}, 1, 0), "contacts.size <= contacts.capacity()");
 }
 
 TEST(CollisionLinkDeathTest, RespondsWithAStepAndALaw) {

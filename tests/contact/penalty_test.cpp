@@ -72,7 +72,7 @@ TEST(Penalty, EveryTargetGivesTheSameBits) {
     apply_penalty(first, kAbout, kMoving, 2000, 5);
     const ContactSum first_sum = sum(first, kAbout);
     const Matrix6d first_matrix = contact_matrix(first, kAbout);
-    const ContactSum first_at_once = penalty_sum(first, kAbout, kMoving, 2000, 5);
+    const Pushing first_at_once = pushing(first, kAbout, kMoving, 2000, 5);
     for (const std::string& target : simd_targets()) {
       SCOPED_TRACE(target);
       use_simd_target(target);
@@ -84,9 +84,10 @@ TEST(Penalty, EveryTargetGivesTheSameBits) {
       EXPECT_EQ(s.wrench.torque, first_sum.wrench.torque);
       EXPECT_EQ(s.depth_max, first_sum.depth_max);
       EXPECT_EQ(contact_matrix(list, kAbout), first_matrix);
-      const ContactSum at_once = penalty_sum(list, kAbout, kMoving, 2000, 5);
-      EXPECT_EQ(at_once.wrench.force, first_at_once.wrench.force);
-      EXPECT_EQ(at_once.wrench.torque, first_at_once.wrench.torque);
+      const Pushing at_once = pushing(list, kAbout, kMoving, 2000, 5);
+      EXPECT_EQ(at_once.sum.wrench.force, first_at_once.sum.wrench.force);
+      EXPECT_EQ(at_once.sum.wrench.torque, first_at_once.sum.wrench.torque);
+      EXPECT_EQ(at_once.W, first_at_once.W);
     }
   }
 }
@@ -96,7 +97,7 @@ TEST(Penalty, InOnePassIsThatInTwoButForTheRoundingOfForces) {
   for (const std::uint32_t count : kCounts) {
     SCOPED_TRACE(count);
     ContactList list = random_contacts(count + 2, count);
-    const ContactSum at_once = penalty_sum(list, kAbout, kMoving, 2000, 5);
+    const ContactSum at_once = pushing(list, kAbout, kMoving, 2000, 5).sum;
     for (std::uint32_t i = 0; i < count; ++i) ASSERT_EQ(force(list, i), Vector3d::Zero()) << "forces are not kept";
     apply_penalty(list, kAbout, kMoving, 2000, 5);
     const ContactSum two = sum(list, kAbout);
@@ -104,6 +105,28 @@ TEST(Penalty, InOnePassIsThatInTwoButForTheRoundingOfForces) {
     EXPECT_LE((at_once.wrench.force - two.wrench.force).norm(), rounding);
     EXPECT_LE((at_once.wrench.torque - two.wrench.torque).norm(), 0.3 * rounding);
     EXPECT_EQ(at_once.depth_max, two.depth_max);
+  }
+}
+
+TEST(Penalty, OnlyWhatPushesResists) {
+  constexpr double kDamping = 60;  // so much that about every third contact does not push
+  for (const std::uint32_t count : kCounts) {
+    SCOPED_TRACE(count);
+    ContactList list = random_contacts(count + 3, count);
+    const Matrix6d W = pushing(list, kAbout, kMoving, 2000, kDamping).W;
+    apply_penalty(list, kAbout, kMoving, 2000, kDamping);
+    ContactList pushes(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (force(list, i).isZero(0)) continue;
+      const std::uint32_t k = pushes.size++;
+      pushes.x[k] = list.x[i], pushes.y[k] = list.y[i], pushes.z[k] = list.z[i];
+      pushes.nx[k] = list.nx[i], pushes.ny[k] = list.ny[i], pushes.nz[k] = list.nz[i];
+    }
+    if (count > 30) {
+      EXPECT_LT(pushes.size, 0.9 * count);
+      EXPECT_GT(pushes.size, 0.3 * count);
+    }
+    EXPECT_LE((W - naive_matrix(pushes, kAbout)).norm(), 1e-12 * count);
   }
 }
 

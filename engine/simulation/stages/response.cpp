@@ -56,7 +56,8 @@ void Response::prepare_bodies(const World& world, const Contacts& contacts) {
     of.loads.contact_damping.setZero();
     of.loads.contact_drift.setZero();
     if (!touches) continue;
-    of.link_body = {body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), 0};
+    of.link_body = {
+        body.rigid.pose(), body.rigid.p_WC, {body.rigid.v_C, body.rigid.omega}, Matrix6d::Zero(), kStabilityBudget};
     if (world.moves(body)) of.link_body.inverse_mass = body.rigid.inverse_mass_matrix();
   }
   for (const std::size_t l : world.near_links) {
@@ -96,21 +97,16 @@ void Response::respond(const World& world, std::size_t l, const Contacts& contac
   const bool at_start = is_explicit(world, l);
   const PenaltyParameters penalty{p.contact_stiffness, p.contact_damping_ratio, at_start && p.stability_rule,
                                   p.passive_contacts};
-  if (method == nullptr) {
-    link.respond(first, second, penalty, world.dt);
-    link.sum_up(first, second, !at_start, sides);
-    return;
-  }
   const Pose X_AB = contacts.X_AB(world, l);
-  const bool changed = method->act_on_normals(link.contacts(), X_AB);
-  if (!at_start && changed) {
-    link.respond_at_once(first, second, penalty, world.dt, sides);
-  } else {
+  if (method != nullptr) method->act_on_normals(link.contacts(), X_AB);
+  if (at_start) {
     link.respond(first, second, penalty, world.dt);
-    if (at_start) method->act_on_forces(link.contacts(), X_AB);
-    link.sum_up(first, second, !at_start, sides);
+    if (method != nullptr) method->act_on_forces(link.contacts(), X_AB);
+    link.sum_up(first, second, sides);
+  } else {
+    link.respond_at_once(first, second, penalty, world.dt, sides);
   }
-  method->act_on_sides(link.contacts(), X_AB, sides);
+  if (method != nullptr) method->act_on_sides(link.contacts(), X_AB, sides);
 }
 
 }  // namespace verisim

@@ -34,7 +34,6 @@ class Response {
   };
   void prepare_bodies(const World& world, const Contacts& contacts);
   void respond(const World& world, std::size_t link, const Contacts& contacts, PairMethod* method);
-
   std::vector<OfBody> bodies_;
   std::vector<LinkSides> sides_;
 };
