@@ -33,6 +33,12 @@ def placed(seed):
             "yaw_seat": draw.uniform(0, 1.5) * (seed // 10 % 2)}
 
 
+def rolls(body, hybrid, integrator):
+    """These take up to 2 s until they have rolled to where they rest, 0.1 to 0.7 mm away: stiff contacts are damped in
+    proportion, and the way down from one voxel to the next is slow."""
+    return body in ("ball", "roll", "sphere", "cylside") and (hybrid, integrator) == ("restore", "implicit")
+
+
 class RestTest(SceneTest):
     def test_what_is_placed_at_rest_rests(self):
         seats = list(itertools.product(MASS, ("off", "restore"), INTEGRATORS, (0.002, 0.004)))
@@ -45,13 +51,11 @@ class RestTest(SceneTest):
                 self.assertLessEqual(abs(late.mean() - weight), 1e-3 * weight)
                 self.assertLessEqual(late.std(), 0.01 * weight)
                 sideways = np.linalg.norm(pose[1000:, :2] - pose[1000, :2], axis=1).max()
-                self.assertLessEqual(sideways, 1e-4)
+                self.assertLessEqual(sideways, 1e-3 if rolls(kind, hybrid, integrator) else 1e-4)
                 self.assertLessEqual(pose[0, 2] - pose[-1, 2], voxelsize / 2)
 
     def test_what_is_placed_at_random_rests(self):
-        # N's standard deviation over W, and the way aside after the first second. Under `restore` with implicit steps
-        # some balls and lying cylinders take 2 s until they have rolled to where they rest, 0.1 to 0.7 mm away: a share.
-        moved = []
+        moved = []  # which of those that may roll still did after the first second: a share
         seeds = range(200 if LONG else 16)
         for seed, hybrid, integrator in itertools.product(seeds, ("off", "restore"), INTEGRATORS):
             settings = placed(seed)
@@ -60,17 +64,14 @@ class RestTest(SceneTest):
                 late = force[1000:, 2]
                 uneven = late.std() / late.mean()
                 aside = np.linalg.norm(pose[1000:, :2] - pose[1000, :2], axis=1).max()
-                rolls = settings["body"] in ("ball", "roll") and (hybrid, integrator) == ("restore", "implicit")
-                moved.append(rolls and (aside > 1e-4 or uneven > 0.01))
-                self.assertLessEqual(aside, 1e-3 if rolls else 1e-4)
-                self.assertLessEqual(uneven, 0.05 if rolls else 0.01)
+                may_roll = rolls(settings["body"], hybrid, integrator)
+                moved.append(may_roll and (aside > 1e-4 or uneven > 0.01))
+                self.assertLessEqual(aside, 1e-3 if may_roll else 1e-4)
+                self.assertLessEqual(uneven, 0.05 if may_roll else 0.01)
         self.assertLessEqual(sum(moved), 0.02 * len(moved))
 
     def test_nothing_pushes_sideways_what_lies_on_a_larger_plate(self):
-        # By voxels there is no friction: while they take up a body's weight it may tilt by 0.01, and what that gives it
-        # stays. Of 40 draws the fastest under `restore` had 0.15 mm/s after 20 s, half of them less than 1 nm/s, and in
-        # the last 10 s the speed changed by 0.09 mm/s at most, of what stands 0.01 askew; under `off` by 1 nm/s. (With a
-        # normal midway between the two planes 8 of 20 went aside by 0.1 m and more.)
+        # With a normal midway between the two planes, 8 of 20 went aside by 0.1 m and more.
         for seed in range(40 if LONG else 4):
             draw = np.random.default_rng(seed)
             settings = {axis: draw.uniform(0.03, 0.06) for axis in "xyz"}
@@ -82,7 +83,7 @@ class RestTest(SceneTest):
                 with self.subTest(hybrid=hybrid, seed=seed, **settings):
                     pose, twist, _ = self.run_scene("lying.lua", "box", hybrid=hybrid, **settings)
                     speed = np.linalg.norm(twist[:, :2], axis=1)
-                    self.assertLessEqual(speed[10000:].max(), {"off": 1e-8, "restore": 3e-4, "exact": 1e-9}[hybrid])
+                    self.assertLessEqual(speed[10000:].max(), 1e-8)
                     self.assertLessEqual(np.linalg.norm(twist[-1, :2] - twist[10000, :2]), 1e-4)
                     self.assertGreater(pose[-1, 2], pose[0, 2] - settings["voxelsize"])
 
