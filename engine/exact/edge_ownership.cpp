@@ -62,10 +62,11 @@ bool is_end(const PlacedFeature& placed, const Candidate& c) {
   return feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width && !feature.goes_on(c.sample, c.place.t);
 }
 
-/// True if a curve that ends at the place comes nearer to another face the farther it is from its end: that face has
-/// its row there, and nothing to push this end with.
-bool falls_from_end(const PlacedFeature& placed, const Candidate& c, const SurfaceAt& other) {
-  return is_end(placed, c) && c.place.t * other.normal.dot(placed.tangent(c.place)) > 0;
+/// True if a curve that ends at the place, where it has not yet entered the face, comes nearer to the other one the
+/// farther it is from its end: that face has its row there, and nothing to push this end with.
+bool falls_from_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const SurfaceAt& other) {
+  return is_end(placed, c) && c.at.distance > -pair.motion.thresholds.coincident &&
+         c.place.t * other.normal.dot(placed.tangent(c.place)) > 0;
 }
 
 /// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies: then the
@@ -155,7 +156,7 @@ double kept_share(const BodyPair& pair, const PlacedFeature& placed, const Exact
   if (c.at.distance > -pair.motion.thresholds.coincident)
     least = std::min(least, there.distance + there.normal.dot(pair.moved(c.p, pair.motion.last_twist)));
   const double depth = -least;
-  const double taken = falls_from_end(placed, c, there) ? 0 : pair.normal_cone_weight(c.sample, there.normal);
+  const double taken = falls_from_end(pair, placed, c, there) ? 0 : pair.normal_cone_weight(c.sample, there.normal);
   if (taken >= 1 || depth <= -pair.motion.thresholds.coincident || falls_beyond_segment(pair, placed, c)) return 0;
   std::array<Place, 2> near = {c.place, c.place};
   const std::size_t across = edge.faces[0] == face ? 1 : 0;

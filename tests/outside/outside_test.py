@@ -61,6 +61,34 @@ class OutsideTest(SceneTest):
                     self.assertLessEqual(overlap.max(), 1e-6)
                     self.assertLessEqual(self.largest_force(recorded), 2 * of_pin)
 
+    @staticmethod
+    def misjudged(seed):
+        """A prism, its clearance, and how a hand misjudges the hole."""
+        draw = np.random.default_rng(seed)
+        return {"n": 3 + seed % 6, "c": np.exp(draw.uniform(np.log(5e-6), np.log(1e-4))), "dir": draw.uniform(0, 360),
+                "error": draw.uniform(3e-4, 6e-4), "tilt": np.deg2rad(draw.uniform(0.2, 0.8)),
+                "speed": draw.uniform(0.03, 0.08), "timestep": draw.choice([5e-4, 1e-3]),
+                "voxelsize": draw.uniform(1e-3, 4e-3)}
+
+    def test_prisms_enter_however_a_hand_misjudges_their_holes(self):
+        # 0 and 60 came down on a corner of the hole with the edge between two lead-in planes, and sank by 5.8 and 1.8 um:
+        # the corner was an end of an edge that no face held. Of 90 three are beyond the bounds: by 1.22 um while they
+        # enter, or 0.033 of the clearance once inside.
+        seeds = range(90) if LONG else (0, 1, 2, 10, 23, 60)
+        beyond = 0
+        for seed in seeds:
+            settings = self.misjudged(seed)
+            with self.subTest(seed=seed, **settings):
+                recorded = self.run_scene("prism_entry.lua", "peg", **settings)
+                overlap = ruler.overlap_of_prism_and_hole(recorded.pose, settings["n"], settings["c"])
+                inside = recorded.pose[:, 2] < 0.043
+                self.assertTrue(inside[-1], "it goes in")
+                entering, fitted = overlap.max(), overlap[inside].max() / settings["c"]
+                self.assertLessEqual(entering, 2e-6 if LONG else 1e-6)
+                self.assertLessEqual(fitted, 0.05 if LONG else 0.02)
+                beyond += entering > 1e-6 or fitted > 0.02
+        self.assertLessEqual(beyond, 0.05 * len(seeds))
+
 
 if __name__ == "__main__":
     unittest.main()
