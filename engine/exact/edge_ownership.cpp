@@ -56,25 +56,32 @@ bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot)
   return true;
 }
 
-/// True if the curve ends at the place.
-bool is_end(const PlacedFeature& placed, const Candidate& c) {
+/// True if the curve ends at the place, at a concave corner: a convex one is a feature of its own.
+bool ends_at_concave_corner(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
   const Feature& feature = *placed.feature;
-  return feature.half_width > 0 && std::abs(c.place.t) >= feature.half_width && !feature.goes_on(c.sample, c.place.t);
+  if (feature.half_width == 0 || std::abs(c.place.t) < feature.half_width || feature.goes_on(c.sample, c.place.t))
+    return false;
+  const Vector3d end = feature.origin + c.place.c * feature.x + c.place.s * feature.y;
+  return std::none_of(pair.mover.features.begin(), pair.mover.features.end(), [&](const Feature& f) {
+    return f.kind == Feature::Kind::point && f.own_face == kNoFace &&
+           (f.origin - end).norm() <= pair.mover.options.same_corner;
+  });
 }
 
 /// True if a curve that ends at the place, where it has not yet entered the face, comes nearer to the other one the
 /// farther it is from its end: that face has its row there, and nothing to push this end with.
 bool falls_from_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const SurfaceAt& other) {
-  return is_end(placed, c) && c.at.distance > -pair.motion.thresholds.coincident &&
-         c.place.t * other.normal.dot(placed.tangent(c.place)) > 0;
+  return c.at.distance > -pair.motion.thresholds.coincident &&
+         c.place.t * other.normal.dot(placed.tangent(c.place)) > 0 && ends_at_concave_corner(pair, placed, c);
 }
 
 /// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies: then the
 /// neighbouring segment has a better place for it, or an edge of the base that the curve crosses there.
 bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
   const double width = 2 * placed.feature->half_width;
-  if (std::abs(c.place.t) < placed.feature->half_width || is_end(placed, c)) return false;
-  return std::abs(c.at.normal.dot(placed.tangent(c.place))) * width > pair.motion.thresholds.coincident;
+  if (std::abs(c.place.t) < placed.feature->half_width) return false;
+  return std::abs(c.at.normal.dot(placed.tangent(c.place))) * width > pair.motion.thresholds.coincident &&
+         !ends_at_concave_corner(pair, placed, c);
 }
 
 /// True if the foot of a place that is now beyond the borders will be within them after the step without contact: so a

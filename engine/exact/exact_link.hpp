@@ -14,6 +14,8 @@
 //                   A face owns only what it can push: where its normal, and that of edge against edge, is outside of
 //                   the mover's normal cone, the place stays with the face across. So a rim that lies on an edge, or
 //                   comes down on it, is held by the one face that can hold it.
+//   Concave corners Of a curve that ends at a concave corner, the end stays with a face that it meets there, where the
+//                   face across has its row at another place of the curve.
 //   Thin walls      A place behind a face, and not inside of the body or hardly so, is no place of that face: it comes
 //                   through another one. What is behind a face and beside its border comes to it through another one.
 //   Sharp corners   Beside a corner of a face that is sharper than 270 degrees (a triangular hole) the strip along one

@@ -79,7 +79,7 @@ class OutsideTest(SceneTest):
         for seed in seeds:
             settings = self.misjudged(seed)
             with self.subTest(seed=seed, **settings):
-                recorded = self.run_scene("prism_entry.lua", "peg", **settings)
+                recorded = self.run_scene("prism_entry.lua", "peg", seed=seed, **settings)
                 overlap = ruler.overlap_of_prism_and_hole(recorded.pose, settings["n"], settings["c"])
                 inside = recorded.pose[:, 2] < 0.043
                 self.assertTrue(inside[-1], "it goes in")

@@ -24,10 +24,11 @@ class SceneTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
         self.run_file = os.path.join(self.folder, "run.h5")
 
-    def run_scene(self, scene, *bodies, folder=HERE, seconds=None, **settings):
+    def run_scene(self, scene, *bodies, folder=HERE, seconds=None, seed=None, **settings):
         """What is recorded of a body; a list of several."""
         command = [VERISIM, "run", os.path.join(folder, scene), "--quiet", "--force", "-o", self.run_file]
         command += ["--duration", str(seconds)] if seconds else []
+        command += ["--seed", str(seed)] if seed is not None else []
         for name, value in settings.items():
             command += ["--set", "{}={}".format(name, value if isinstance(value, str) else repr(float(value)))]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
