@@ -33,16 +33,23 @@ def placed(seed):
             "yaw_seat": draw.uniform(0, 1.5) * (seed // 10 % 2)}
 
 
-def rolls(body, hybrid, integrator):
-    """These take up to 2 s until they have rolled to where they rest, 0.1 to 0.7 mm away: stiff contacts are damped in
-    proportion, and the way down from one voxel to the next is slow."""
-    return body in ("ball", "roll", "sphere", "cylside") and (hybrid, integrator) == ("restore", "implicit")
+# Wanted: 0.1 mm. With implicit steps stiff contacts are damped in proportion, and the way down from one voxel to the
+# next is slow: this one rolls 0.19 mm after the first second until it rests.
+ROLLS = {("sphere", "restore", "implicit", 0.002): 0.2}
+WERE_LOST = (("cylside", "off", "semi-implicit", 0.002), ("vgroove", "off", "semi-implicit", 0.004))
+
+
+def may_roll(body, hybrid, integrator):
+    """Some of these take up to 2 s, for the same reason, and go 0.1 to 0.7 mm."""
+    return body in ("ball", "roll") and (hybrid, integrator) == ("restore", "implicit")
 
 
 class RestTest(SceneTest):
     def test_what_is_placed_at_rest_rests(self):
         seats = list(itertools.product(MASS, ("off", "restore"), INTEGRATORS, (0.002, 0.004)))
-        for kind, hybrid, integrator, voxelsize in seats if LONG else seats[::5]:
+        chosen = seats if LONG else [s for i, s in enumerate(seats) if i % 5 == 0 or s in ROLLS or s in WERE_LOST]
+        for case in chosen:
+            kind, hybrid, integrator, voxelsize = case
             with self.subTest(kind=kind, hybrid=hybrid, integrator=integrator, voxelsize=voxelsize):
                 pose, _, force = self.run_scene("resting.lua", "b", kind=kind, hybrid=hybrid, integrator=integrator,
                                                   voxelsize=voxelsize)
@@ -51,11 +58,11 @@ class RestTest(SceneTest):
                 self.assertLessEqual(abs(late.mean() - weight), 1e-3 * weight)
                 self.assertLessEqual(late.std(), 0.01 * weight)
                 sideways = np.linalg.norm(pose[1000:, :2] - pose[1000, :2], axis=1).max()
-                self.assertLessEqual(sideways, 1e-3 if rolls(kind, hybrid, integrator) else 1e-4)
+                self.assertLessEqual(sideways, 1e-3 * ROLLS.get(case, 0.1))
                 self.assertLessEqual(pose[0, 2] - pose[-1, 2], voxelsize / 2)
 
     def test_what_is_placed_at_random_rests(self):
-        moved = []  # which of those that may roll still did after the first second: a share
+        moved = []  # which went on after the first second: a share
         seeds = range(200 if LONG else 16)
         for seed, hybrid, integrator in itertools.product(seeds, ("off", "restore"), INTEGRATORS):
             settings = placed(seed)
@@ -64,10 +71,10 @@ class RestTest(SceneTest):
                 late = force[1000:, 2]
                 uneven = late.std() / late.mean()
                 aside = np.linalg.norm(pose[1000:, :2] - pose[1000, :2], axis=1).max()
-                may_roll = rolls(settings["body"], hybrid, integrator)
-                moved.append(may_roll and (aside > 1e-4 or uneven > 0.01))
-                self.assertLessEqual(aside, 1e-3 if may_roll else 1e-4)
-                self.assertLessEqual(uneven, 0.05 if may_roll else 0.01)
+                slow = may_roll(settings["body"], hybrid, integrator)
+                moved.append(aside > 1e-4 or uneven > 0.01)
+                self.assertLessEqual(aside, 1e-3 if slow else 1e-4)
+                self.assertLessEqual(uneven, 0.05 if slow else 0.01)
         self.assertLessEqual(sum(moved), 0.02 * len(moved))
 
     def test_nothing_pushes_sideways_what_lies_on_a_larger_plate(self):
@@ -83,7 +90,7 @@ class RestTest(SceneTest):
                 with self.subTest(hybrid=hybrid, seed=seed, **settings):
                     pose, twist, _ = self.run_scene("lying.lua", "box", hybrid=hybrid, **settings)
                     speed = np.linalg.norm(twist[:, :2], axis=1)
-                    self.assertLessEqual(speed[10000:].max(), 1e-8)
+                    self.assertLessEqual(speed[10000:].max(), 1e-9 if hybrid == "exact" else 1e-8)
                     self.assertLessEqual(np.linalg.norm(twist[-1, :2] - twist[10000, :2]), 1e-4)
                     self.assertGreater(pose[-1, 2], pose[0, 2] - settings["voxelsize"])
 
