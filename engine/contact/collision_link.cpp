@@ -11,7 +11,6 @@ namespace {
 
 /// Fraction of the budget that is used: the rule assumes a constant W, but W changes within a step.
 constexpr double kSafety = 0.8;
-constexpr double kStabilityBudget = 4;
 
 /// Upper bound of the largest eigenvalue of M^-1 W: the Frobenius norm of M^-1/2 W M^-1/2 = sqrt(trace((M^-1 W)^2)).
 double bound_of(const Matrix6d& inverse_mass, const Matrix6d& W) {
@@ -138,7 +137,6 @@ void CollisionLink::follow_motion() {
   stiffness_before_ = stiffness_;
 }
 
-/// @param turned, moved  what lies at x, relative to the grid's origin, came `turned x + moved` since the query before
 void CollisionLink::follow_patch(const PressureSum& pressure, const Matrix3d& turned, const Vector3d& moved) {
   if (!(pressure.sum > 0)) return;
   if (pressed_in_ + 1 != queries_) grip_.let_go();
@@ -212,7 +210,6 @@ void CollisionLink::respond_at_once(const LinkBody& first, const LinkBody& secon
   give_pushing(first, second, pushing(contacts_, about_, relative_twist(first, second), stiffness_, damping_), sides);
 }
 
-/// Of the points' body relative to the map's, where relative_twist is: change of that twist by an impulse.
 Matrix6d CollisionLink::mobility(const LinkBody& first, const LinkBody& second) const {
   const LinkBody& map = first_is_map_ ? first : second;
   const LinkBody& points = first_is_map_ ? second : first;

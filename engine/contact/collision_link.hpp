@@ -29,10 +29,10 @@ namespace verisim {
 /// State of a body in this frame.
 struct LinkBody {
   Pose X_WB;
-  Vector3d p_WC;          ///< centre of mass
-  Twist twist;            ///< of the centre of mass
-  Matrix6d inverse_mass;  ///< world coordinates; zero for a body that does not move
-  double budget = 4;      ///< part of the stability budget for what this link does at the start of a step; all: 4
+  Vector3d p_WC;                     ///< centre of mass
+  Twist twist;                       ///< of the centre of mass
+  Matrix6d inverse_mass;             ///< world coordinates; zero for a body that does not move
+  double budget = kStabilityBudget;  ///< part of the stability budget for what this link does at the start of a step
 };
 
 struct PenaltyParameters {
@@ -69,8 +69,7 @@ class CollisionLink {
   [[nodiscard]] const ContactList& contacts() const { return contacts_; }
 
   // Of both parts: @pre dt is finite and above 0; stiffness_max and damping_ratio are finite and not negative; inverse
-  // masses are symmetric; with the stability rule, the budget of a body that moves is above 0. Where there is no
-  // contact, nothing is asked.
+  // masses are symmetric; the budget of a body that moves is above 0. Where there is no contact, nothing is asked.
 
   /// Response, part one: sets the stiffness by the stability rule and the penalty force of every contact.
   void respond(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);
@@ -95,6 +94,8 @@ class CollisionLink {
   /// Replaces each contact's depth by how far its spring is pressed (see above).
   void follow_motion();
   struct PressureSum;
+  /// How the bodies slid where springs press. What lies at x, relative to the grid's origin, came `turned x + moved`
+  /// since the query before.
   void follow_patch(const PressureSum& pressure, const Matrix3d& turned, const Vector3d& moved);
   /// Sets W_, stiffness_ and damping_.
   void choose_stiffness(const LinkBody& first, const LinkBody& second, const PenaltyParameters& parameters, double dt);

@@ -43,7 +43,8 @@ Grip::Matrices Grip::hold(const Now& now, Wrench& pressure) {
   const double fast = slip.norm() / kFast;
   const double limit = kGrip * pressing / (1 + fast * fast);
   stretch *= std::min(1.0, limit / (held.stiffness * stretch.norm()));  // it slips
-  held_ = {stretch.head<3>(), stretch.tail<3>() / reach};
+  held_.slid = stretch.head<3>();
+  held_.turned = reach > 0 ? Vector3d(stretch.tail<3>() / reach) : Vector3d::Zero();
   Vector6d force = -held.stiffness * stretch - held.damping * slip;
   if (const double size = force.norm(); size > limit) {
     force *= limit / size;

@@ -3,9 +3,10 @@
 // Voxels are frictionless. But a body that settles on them tilts by some mrad, and normals between a face and its
 // border leave a push of up to 1e-3 of its weight: it gets some mm/s, and nothing would stop it. So where the contacts
 // press, a bristle holds the two bodies together: a spring across the force, that is stretched by the way that the
-// point of pressure slides, and slips beyond kGrip times the force (Dahl's model of friction, with a damper). It stores
+// point of pressure slides and by how far the body turns, times its distance from there, and slips beyond kGrip times
+// the force (Dahl's model of friction, with a damper). It stores
 // no more than it was given, and forgets what it slips. What slides faster moves on purpose: there the limit fades by
-// the square of the speed, to 1e-7 of the force at 1 m/s.
+// the square of the speed, to 3e-7 of the force at 1 m/s.
 #pragma once
 
 #include "engine/base/pose.hpp"
@@ -38,11 +39,13 @@ class Grip {
     double budget;      ///< part of the stability budget of 4 that this contact has
     double dt;          ///< s
   };
-  /// Adds to `pressure`, the contacts' wrench on the body, what the grip does at the start of the step.
+  /// K = stiffness * across and D = damping * across of the grip's wrench, for an implicit step. Zero where it slips.
   struct Matrices {
-    double stiffness = 0, damping = 0;   ///< N/m, N s/m: of what the wrench changes by with the motion,
-    Matrix6d across = Matrix6d::Zero();  ///< times this; all zero where it slips
+    double stiffness = 0, damping = 0;  ///< N/m, N s/m
+    Matrix6d across = Matrix6d::Zero();
   };
+  /// Adds to `pressure`, the contacts' wrench on the body, what the grip does at the start of the step.
+  /// @pre dt and budget are above 0; mobility is symmetric
   Matrices hold(const Now& now, Wrench& pressure);
 
  private:

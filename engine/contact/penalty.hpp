@@ -12,6 +12,9 @@
 
 namespace verisim {
 
+/// k dt^2 lambda + 2 b dt lambda of all that acts on a body at the start of a step stays below it.
+inline constexpr double kStabilityBudget = 4;
+
 /// W = sum over contacts of J J^T about the point `about` (body coordinates of A relative to its grid origin), where
 /// the contacts' own coordinates live. Eight fixed strands, then a fixed tree: same bits for every SIMD target.
 /// @pre contacts.size <= contacts.capacity(), here and below: whole vectors are read, to the end of the padding

@@ -76,7 +76,8 @@ bool falls_from_end(const BodyPair& pair, const PlacedFeature& placed, const Can
 }
 
 /// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies: then the
-/// neighbouring segment has a better place for it, or an edge of the base that the curve crosses there.
+/// neighbouring segment has a better place for it, or an edge of the base that the curve crosses there. At a concave
+/// corner there is none.
 bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
   const double width = 2 * placed.feature->half_width;
   if (std::abs(c.place.t) < placed.feature->half_width) return false;

@@ -20,11 +20,13 @@ struct Pressed {
   Grip grip;
   Twist velocity;
   Vector3d arm = {0, 0, -0.03};
+  double patch_radius = 0.002;
   Grip::Matrices last;
 
   /// What the grip does while the body moves on with its velocity.
   Wrench step() {
-    Grip::Patch patch{arm, 0.002, kStep * (velocity.linear + velocity.angular.cross(arm)), kStep * velocity.angular};
+    Grip::Patch patch{arm, patch_radius, kStep * (velocity.linear + velocity.angular.cross(arm)),
+                      kStep * velocity.angular};
     grip.follow(patch);
     Matrix6d mobility = Matrix6d::Zero();
     mobility.topLeftCorner<3, 3>().diagonal().setConstant(1 / kMass);
@@ -114,6 +116,14 @@ TEST(Grip, GivesNoEnergy) {
     }
     EXPECT_LT(work, 0) << run;
   }
+}
+
+TEST(Grip, HoldsAPlaceAtTheCentreOfMass) {
+  Pressed body;
+  body.arm.setZero();
+  body.patch_radius = 0;
+  body.velocity = {{0.001, 0, 0}, {0, 0, 0.1}};
+  for (int i = 0; i < 3; ++i) EXPECT_LT(body.step().force.x(), 0) << "a number, and against the motion";
 }
 
 TEST(Grip, HasNothingToHoldWithoutPressure) {

@@ -6,8 +6,6 @@
 namespace verisim {
 namespace {
 
-constexpr double kStabilityBudget = 4;  // dt^2 k lambda + 2 dt b lambda stays below it (contact/penalty.hpp)
-
 /// @param mutual  both bodies of the link move
 void add(Loads& loads, const LinkSide& side, bool mutual) {
   (mutual ? loads.contact_mutual : loads.contact) += side.wrench;
