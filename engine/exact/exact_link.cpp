@@ -44,6 +44,7 @@ RelativeMotion relative_motion(const BodyMotion& mover, const BodyMotion& base, 
   motion.size = size;
   motion.overlap = overlap;
   motion.mover_is_second = mover_is_second;
+  motion.is_found_again = mover.is_found_again || base.is_found_again;
   motion.thresholds = thresholds;
   motion.of_mover = &mover;
   motion.of_base = &base;

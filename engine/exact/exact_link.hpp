@@ -69,6 +69,7 @@ struct BodyMotion {
   Twist twist;                       ///< of the centre of mass, without contact
   Twist last_twist = {};             ///< likewise, at the end of the last step, contacts included
   std::optional<Twist> during = {};  ///< likewise, that of the step, if known: what curves is of it; else of last_twist
+  bool is_found_again = false;       ///< is `during` the answer to contacts that were found in this step before?
   [[nodiscard]] const Twist& taken() const { return during ? *during : last_twist; }
 };
 

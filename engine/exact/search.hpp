@@ -27,6 +27,7 @@ struct RelativeMotion {
   double size;       ///< m, half the diagonal of the smaller body
   double overlap;    ///< m, of the two bodies in the last step
   bool mover_is_second;
+  bool is_found_again = false;  ///< BodyMotion::is_found_again, of either
   SearchThresholds thresholds;
   const BodyMotion* of_mover = nullptr;  ///< of the call of find() that it is of
   const BodyMotion* of_base = nullptr;

@@ -18,8 +18,7 @@ class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
       : pair_{mover, base, motion},
-        is_found_again_(motion.during.linear != motion.last_twist.linear ||
-                        motion.during.angular != motion.last_twist.angular),
+        is_found_again_(motion.is_found_again),
         near_(mover, base, motion),
         rows_(rows),
         cost_(cost) {}
@@ -67,7 +66,7 @@ class Search {
 
   const BodyPair pair_;
   std::optional<RelativeMotion> still_ahead_, still_after_;  ///< of pair_at(), when first asked for
-  const bool is_found_again_;                                ///< for another motion than that of the last step
+  const bool is_found_again_;                                ///< for another motion than was expected
   NearPairs near_;
   RowList& rows_;
   SearchCost& cost_;

@@ -8,6 +8,7 @@ import unittest
 
 import numpy as np
 
+import ruler
 from scene_test import LONG, SceneTest
 
 DENSITY = 2000
@@ -103,6 +104,23 @@ class ConformingTest(SceneTest):
                                             duration=4)
                 angle = np.arctan2(pose[:, 0], -pose[:, 1])
                 self.assertAlmostEqual(np.abs(angle[-1000:]).max(), 0.3, delta=2e-4)
+
+    def test_half_a_ball_that_swings_in_a_bowl_keeps_its_energy(self):
+        """It slides and turns about all its axes without friction. Draws of sizes, bowls, tilts and steps; by central
+        differences of poses, the mean of each tenth of 100 sqrt(a / g) against that of the second."""
+        for seed in range(24 if LONG else 6):
+            draw = np.random.default_rng(seed)
+            a, steps = 10 ** draw.uniform(-2.5, -1), int(draw.choice([30, 60, 120]))
+            with self.subTest(seed=seed, a=a, steps=steps):
+                pose, _, force = self.run_scene(
+                    "half_ball.lua", "b", a=a, steps=steps, wide=draw.uniform(1.15, 2), tilt=draw.uniform(0.1, 1.2),
+                    turn=draw.uniform(0, 2 * math.pi), aside=draw.uniform(0, 0.6), voxelsize=a / 10,
+                    duration=100 * math.sqrt(a / 9.81))
+                self.assertGreater(force[len(force) // 10:, 2].min(), 0, "it stays on the bowl")
+                energy = ruler.half_ball_energy(pose, a, math.sqrt(a / 9.81) / steps)
+                of_tenths = [part.mean() for part in np.array_split(energy, 10)[1:]]
+                self.assertLess(max(of_tenths), (1 + 5e-4) * of_tenths[0])
+                self.assertGreater(min(of_tenths), (1 - 2e-3) * of_tenths[0])
 
     def test_sections_with_bands_enter_their_holes_without_blows(self):
         kinds = ("oct", "hex", "square", "tri") if LONG else ("oct", "square")

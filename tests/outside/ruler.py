@@ -100,6 +100,16 @@ def cylinder_energy(pose, mass, dt=0.001, radius=0.01, height=0.03, g=9.81):
     return kinetic + mass * g * pose[1:-1, 2]
 
 
+def half_ball_energy(pose, a, dt, g=9.81):
+    """Of one kilogram, likewise, above its lowest place. Body coordinates: the ball's centre, the half below it."""
+    R = rotations(pose)
+    centre = np.hstack([pose[:, :3] + R @ np.array([0, 0, -3 * a / 8]), pose[:, 3:]])
+    v, w_world = velocities(centre, dt)
+    w = np.einsum("ikj,ik->ij", R[1:-1], w_world)
+    kinetic = 0.5 * (v * v).sum(1) + 0.5 * a * a * (w**2 @ np.array([83 / 320, 83 / 320, 2 / 5]))
+    return kinetic + g * (centre[1:-1, 2] - centre[:, 2].min())
+
+
 def peg_points(n, chamfer_by, R=0.01, L=0.06, ch=0.001):
     """Corners of the peg of prism_entry.lua; where its lead-in is a cone, places along the edges between."""
     flats = [np.array([math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n)]) for i in range(n)]

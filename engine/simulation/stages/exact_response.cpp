@@ -162,7 +162,7 @@ void ExactResponse::list_islands(const World& world) {
 void ExactResponse::begin(const World& world, const Response& response) {
   for (const std::size_t i : world.busy) {
     OfBody& of = bodies_[i];
-    of.solved = of.placed = of.moves_otherwise = false;
+    of.solved = of.placed = of.moves_otherwise = of.is_found_again = false;
     of.speed = 0;
     of.wrench = {};
     of.shift_moment = Vector3d::Zero();
@@ -171,9 +171,27 @@ void ExactResponse::begin(const World& world, const Response& response) {
     if (!world.bodies[i].exact || !world.moves(world.bodies[i])) continue;
     of.step = begin_implicit(world.bodies[i].rigid, response.loads(i), world.dt);
     of.velocity = of.step.free;
-    of.during << world.bodies[i].rigid.v_C, world.bodies[i].rigid.omega;
+    expect_motion(world.bodies[i].rigid, of);
     of.speed = speed_of(world.bodies[i], of.velocity);
   }
+}
+
+/// With what velocity a body is taken to move when its contacts are found: the last one, and what the last step changed
+/// of it if the step before changed alike. Without that a contact that turns the velocity is found a little late in
+/// every step, always on the same side: half a ball of 6 mm that swings in a bowl gains 0.4 % of energy a second at
+/// steps of 0.9 ms, and 0.02 % with it.
+void ExactResponse::expect_motion(const RigidBody& rigid, OfBody& of) {
+  constexpr double kAlike = 0.5;
+  Vector6d u;
+  u << rigid.v_C, rigid.omega;
+  const Vector6d change = u - of.last;
+  const Vector6d other = change - of.last_change;
+  const auto alike = [](const auto& now, const auto& before) { return now.norm() < kAlike * before.norm(); };
+  const bool goes_on =
+      alike(other.head<3>(), of.last_change.head<3>()) && alike(other.tail<3>(), of.last_change.tail<3>());
+  of.during = goes_on ? u + change : u;
+  of.last = u;
+  of.last_change = change;
 }
 
 /// What a body may meet in this step because another one hits it first: it goes no faster then than that one, and its
@@ -260,6 +278,7 @@ void ExactResponse::find(const World& world, std::size_t l, exact::ExactLink& se
     motion.twist = {of.velocity.head<3>(), of.velocity.tail<3>()};
     motion.last_twist = {rigid.v_C, rigid.omega};
     motion.during = Twist{of.during.head<3>(), of.during.tail<3>()};
+    motion.is_found_again = of.is_found_again;
     return motion;
   };
   search.find(motion_of(world.links[l].first), motion_of(world.links[l].second), world.dt, closing, links_[l].overlap);
@@ -295,7 +314,7 @@ bool ExactResponse::mark_otherwise_moved(const World& world, std::size_t island)
     const double speed = speed_of(world.bodies[i], u);
     of.moves_otherwise = curves > kCurves || world.dt * (speed - of.speed_hit) > 0.5 * kMargin;
     if (!of.moves_otherwise) continue;
-    any = true;
+    any = of.is_found_again = true;
     of.during = u;
     of.speed_hit = std::max(of.speed_hit, speed);
   }

@@ -59,6 +59,8 @@ class ExactResponse {
     double speed_hit = 0;                ///< m/s, likewise if another body hits it in this step
     Vector6d during = Vector6d::Zero();  ///< with which it was taken to move when its contacts were found
     bool moves_otherwise = false;        ///< than that
+    bool is_found_again = false;         ///< is `during` the answer to contacts that were found before?
+    Vector6d last = Vector6d::Zero(), last_change = Vector6d::Zero();  ///< velocity of the last step, and its change
     Wrench wrench;
     Vector3d shift_moment = Vector3d::Zero();
     Bounds box_B;
@@ -92,6 +94,7 @@ class ExactResponse {
     Pressing pressing;  ///< of the last frame, or of a blow in this one
   };
   void begin(const World& world, const Response& response);
+  static void expect_motion(const RigidBody& rigid, OfBody& of);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
   void begin_frame(const World& world, OfLink& of) const;
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing, FrameCost& cost);
