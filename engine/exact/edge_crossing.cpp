@@ -8,11 +8,11 @@ namespace {
 constexpr double kSameDistance =
     1e-12;  // m, no heuristic but rounding, of two faces: a tenth of what double precision says of a body of metres
 
-/// The faces a and b of a convex edge, their distances compared by one rule, whatever the place.
+/// The faces a and b of a convex edge of the base, their distances compared by one rule, whatever the place.
 class ComparedFaces {
  public:
-  ComparedFaces(const BodyPair& pair, std::uint32_t a, std::uint32_t b, OwnershipRule rule)
-      : pair_(pair), a_(a), b_(b), rule_(rule) {}
+  ComparedFaces(const BodyPair& pair, const ExactEdge& edge, OwnershipRule rule)
+      : pair_(pair), edge_(edge), a_(edge.faces[0]), b_(edge.faces[1]), rule_(rule) {}
 
   struct At {
     SurfaceAt a, b;
@@ -43,12 +43,29 @@ class ComparedFaces {
       if (edge.convexity != Convexity::convex || third == other) continue;
       const SurfaceAt there = surface(third).at(p);
       const ComparedDistances compared = compared_by(pair_, rule_, p, here, there);
-      if (compared.other > compared.mine && edge.limits_face_at(face, p, there.distance)) return false;
+      const bool leads = compared.other > compared.mine && edge.limits_face_at(face, p, there.distance);
+      const bool is_inside = there.distance < -pair_.motion.overlap - pair_.motion.thresholds.touching;
+      // Where the third face and the other one meet concavely, the place is to be outside of the third; else of this.
+      if (leads == is_inside ? leads : meet_concavely(edge, face) == is_inside) return false;
     }
     return answer.where != Trim::Where::outside;
   }
 
+  /// True if the edge and another one of `face` end at a corner of it that is not convex. There the material is inside
+  /// of either of the two faces across: a place leaves it through both, and none of the two owns it alone.
+  [[nodiscard]] bool meet_concavely(const ExactEdge& another, std::uint32_t face) const {
+    if (edge_.extent == ExactEdge::Extent::all || another.extent == ExactEdge::Extent::all) return false;
+    const std::size_t side = another.faces[0] == face ? 0 : 1;
+    for (std::size_t end = 0; end < 2; ++end)
+      for (const Vector3d& corner : edge_.ends)
+        if (!another.limits_beyond_end[side][end] &&
+            (another.ends[end] - corner).norm() <= pair_.base.options.same_corner)
+          return true;
+    return false;
+  }
+
   const BodyPair& pair_;
+  const ExactEdge& edge_;
   std::uint32_t a_, b_;
   OwnershipRule rule_;
 };
@@ -95,8 +112,12 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
   // A place that is outside by position is no overlap, whatever the edge by motion says of it.
   const double farthest = std::max(at.a.distance, at.b.distance);
   if (c.gap * length < std::min(0.0, farthest) - pair.motion.thresholds.coincident) return false;
-  return c.gap > -pair.base.options.spacing && edge.limits_face_at(edge.faces[0], c.p, at.b.distance) &&
-         edge.limits_face_at(edge.faces[1], c.p, at.a.distance) && faces.are_outermost(c.p);
+  if (!(c.gap > -pair.base.options.spacing)) return false;
+  // Beside an end at a concave corner the edge goes on, as far as are_outermost() lets it: what slides along the corner
+  // is a nanometre off either end, and the row is to be there before the step closes it.
+  constexpr double kGoesOn = -1;
+  return edge.limits_face_at(edge.faces[0], c.p, kGoesOn) && edge.limits_face_at(edge.faces[1], c.p, kGoesOn) &&
+         faces.are_outermost(c.p);
 }
 
 }  // namespace
@@ -139,8 +160,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEd
   const OwnershipRule by_motion = here == OwnershipRule::by_position ? rule_at(near[1]) : here;
   for (const OwnershipRule rule : {OwnershipRule::by_position, by_motion}) {
     Candidate crossed = c;
-    if (!cross_edge_by(ComparedFaces(pair, edge.faces[0], edge.faces[1], rule), pair, placed, edge, near, crossed))
-      continue;
+    if (!cross_edge_by(ComparedFaces(pair, edge, rule), pair, placed, edge, near, crossed)) continue;
     c = crossed;
     return true;
   }

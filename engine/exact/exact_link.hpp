@@ -23,6 +23,8 @@
 //   Edge and edge   The mover's curves are tested against the convex edges, too. Where a segment crosses from one face
 //                   of an edge to the other, there is a row with the normal perpendicular to both curves; it crosses
 //                   now or, where it does not yet, after the step (edge_crossing.hpp).
+//                   Beside its end at a corner that is not convex an edge goes on, as far as contacts are deep: what
+//                   slides down such a corner leaves the material through both of its walls, and has both rows.
 //   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
 //                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
 //                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.

@@ -12,10 +12,10 @@ bool is_of_lines(const BodyPair& pair, const PlacedFeature& placed, const ExactE
 }
 
 /// True if a straight feature leaves both planes of an edge in the same direction, but not after the step.
-bool slopes_turn(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& ahead, const ExactEdge& edge) {
+bool slopes_turn(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& there, const ExactEdge& edge) {
   const Vector3d& a = pair.base.faces[edge.faces[0]].surface->axis();
   const Vector3d& b = pair.base.faces[edge.faces[1]].surface->axis();
-  return a.dot(placed.x) * b.dot(placed.x) >= 0 && a.dot(ahead.x) * b.dot(ahead.x) < 0;
+  return a.dot(placed.x) * b.dot(placed.x) >= 0 && a.dot(there.x) * b.dot(there.x) < 0;
 }
 
 }  // namespace
@@ -38,9 +38,11 @@ void Search::cross_block(std::uint32_t r, std::uint32_t e) {
   const PlacedFeature& placed = placed_feature(block);
   if (!is_of_lines(pair_, placed, edge) || may_cross_edge(pair_, placed, edge))
     return cross_block(When::now, placed, block, e);
-  const PlacedFeature ahead = placed_by(pair_.motion.ahead(), feature);
-  if (slopes_turn(pair_, placed, ahead, edge) && may_cross_edge(pair_at(When::ahead), ahead, edge))
-    cross_block(When::ahead, ahead, block, e);
+  for (const When when : {When::ahead, When::after}) {
+    const PlacedFeature there = placed_by(pair_at(when).motion.now, feature);
+    if (!slopes_turn(pair_, placed, there, edge) || !may_cross_edge(pair_at(when), there, edge)) continue;
+    return cross_block(when, there, block, e);
+  }
 }
 
 /// Edge against edge: one row for a group of samples, that of the crossing with the smallest gap at the end of the step

@@ -14,9 +14,10 @@ void declare_body(const World& world, const Stages& stages, std::size_t i, Colum
   const std::string path = "/state/body/" + body.name;
   columns.add(path + "/pose", "m, 1", "world pose of the body coordinates: position, quaternion x y z w",
               [&body] { return body.rigid.pose(); });
-  columns.add(path + "/twist", "m/s, rad/s", "velocity of the centre of mass, angular velocity, of the step that led to the pose; world", [&body] {
-    return Twist{body.rigid.v_C, body.rigid.omega};
-  });
+  columns.add(path + "/twist", "m/s, rad/s",
+              "velocity of the centre of mass, angular velocity, of the step that led to the pose; world", [&body] {
+                return Twist{body.rigid.v_C, body.rigid.omega};
+              });
   columns.add(path + "/force", "N, N m", "contact wrench on the body as applied, about its centre of mass; world",
               [&stages, i] { return stages.reactions.on_body(i); });
 }

@@ -72,22 +72,17 @@ class OutsideTest(SceneTest):
 
     def test_prisms_enter_however_a_hand_misjudges_their_holes(self):
         # 0 and 60 came down on a corner of the hole with the edge between two lead-in planes, and sank by 5.8 and 1.8 um:
-        # the corner was an end of an edge that no face held. Of 90 three are beyond the bounds: by 1.22 um while they
-        # enter, or 0.033 of the clearance once inside.
-        seeds = range(90) if LONG else (0, 1, 2, 10, 23, 60)
-        beyond = 0
-        for seed in seeds:
+        # the corner was an end of an edge that no face held. 1 and 3 slid down a corner with an edge of theirs, and each
+        # of the hole's two edges there ended a nanometre short of it in turn. 49 turned across an edge within a step.
+        for seed in range(90) if LONG else (0, 1, 2, 3, 10, 49, 60):
             settings = self.misjudged(seed)
             with self.subTest(seed=seed, **settings):
                 recorded = self.run_scene("prism_entry.lua", "peg", seed=seed, **settings)
                 overlap = ruler.overlap_of_prism_and_hole(recorded.pose, settings["n"], settings["c"])
                 inside = recorded.pose[:, 2] < 0.043
                 self.assertTrue(inside[-1], "it goes in")
-                entering, fitted = overlap.max(), overlap[inside].max() / settings["c"]
-                self.assertLessEqual(entering, 2e-6 if LONG else 1e-6)
-                self.assertLessEqual(fitted, 0.05 if LONG else 0.02)
-                beyond += entering > 1e-6 or fitted > 0.02
-        self.assertLessEqual(beyond, 0.05 * len(seeds))
+                self.assertLessEqual(overlap.max(), 1e-6)
+                self.assertLessEqual(overlap[inside].max(), 0.02 * settings["c"])
 
 
 if __name__ == "__main__":
