@@ -126,7 +126,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     strongest.weight -= best.weight;
     add_face_row(placed, strongest, count, face);
   }
-  if (best.gap_ahead >= kSlack) return;
+  if (best.gap_ahead >= 0) return;
   for (const int side : {-1, 1}) add_group_end(placed, curve, best, std::span(estimates).first(count), side, face);
 }
 
@@ -261,7 +261,7 @@ void Search::add_group_end(const PlacedFeature& placed, const CurveFromSurface& 
   const int count = static_cast<int>(gaps_ahead.size());
   const int here = static_cast<int>(best.sample - best.group);
   const auto is_coincident = [&](double gap_ahead, double away) {
-    return gap_ahead < best.gap_ahead * (1 - away / pair_.motion.size) + kSlack;
+    return gap_ahead < best.gap_ahead * (1 - away / pair_.motion.size);
   };
   for (int i = side > 0 ? count - 1 : 0; side * (i - here) >= 0; i -= side) {
     const double offset = side * (2 * half * (i - here) - best.place.t) + half;  // in t, from the closest place

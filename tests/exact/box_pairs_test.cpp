@@ -2,8 +2,6 @@
 // theorem of separating axes, from poses alone. And bodies of one size, one flush on the other.
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "tests/exact/scenes.hpp"
 #include "tests/length.hpp"
 
@@ -97,46 +95,6 @@ TEST(FlushBodies, OfOneSizeStandOnEachOther) {
   expect_flush_bodies_meet(make(Solid::Kind::box, {0.03, 0.03, 0.03}), 0.03, 0.02);
   expect_flush_bodies_meet(make(Solid::Kind::cylinder, {0.015, 0.03}), 0.03, 0.015);
   expect_flush_bodies_meet(make(Solid::Kind::tube, {0.02, 0.012, 0.03}), 0.03, 0.02);
-}
-
-/// Boxes of one size, one on the other, flush to a third of a micrometre.
-Pose flush(Draw& draw, double side, const Vector3d& tilt) {
-  const auto off = [&] { return draw.between(-3e-7, 3e-7); };
-  return {{off(), off(), side}, rotation_from_vector(tilt)};
-}
-
-// Boxes in a heap fall together: without contact neither moves against the other, and any quarter may be pressed next.
-TEST(FlushBodies, ThatDoNotMoveAgainstEachOtherAreHeldInEveryQuarter) {
-  constexpr double kSide = 0.03;
-  Pair pair(make(Solid::Kind::box, {kSide, kSide, kSide}), make(Solid::Kind::box, {kSide, kSide, kSide}), 0.01);
-  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    Draw draw(seed);
-    const auto turn = [&](double most) { return draw.in_box({most, most, most}); };
-    const Pose X = flush(draw, kSide, turn(3e-9));
-    const Twist slow{Vector3d::Zero(), turn(1e-6)};
-    pair.link.find({}, {X, X.position, slow, slow}, kDt, kMargin, 1e-10);
-    std::array<bool, 4> held{};
-    for (const ContactRow& row : pair.link.rows().rows())
-      if (row.normal.z() > 0.999) held[(row.point.x() > 0 ? 1 : 0) + (row.point.y() > 0 ? 2 : 0)] = true;
-    ASSERT_TRUE(held[0] && held[1] && held[2] && held[3]) << "seed " << seed;
-  }
-}
-
-// The corner of either is off the other's face; where the edges cross holds it.
-TEST(FlushBodies, OfWhichACornerIsDeepAreHeldThere) {
-  constexpr double kSide = 0.03;
-  Pair pair(make(Solid::Kind::box, {kSide, kSide, kSide}), make(Solid::Kind::box, {kSide, kSide, kSide}), 0.01);
-  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    Draw draw(seed);
-    const double depth = std::pow(10, draw.between(-6, -5));
-    const Vector3d lean = draw.in_box({1, 1, 0}).normalized() * (depth / kSide);
-    const Pose X = flush(draw, kSide, lean);  // a corner is as deep as the opposite one is high
-    const double corner = 0.5 * kSide * (std::abs(lean.x()) + std::abs(lean.y()));
-    double found = 0;
-    for (const ContactRow& row : pair.rows_at(X, kMargin))
-      if (row.normal.z() > 0.999) found = std::max(found, -row.gap);
-    ASSERT_GT(found, 0.9 * corner) << "seed " << seed;
-  }
 }
 
 }  // namespace

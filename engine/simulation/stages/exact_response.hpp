@@ -94,7 +94,7 @@ class ExactResponse {
     Pressing pressing;  ///< of the last frame, or of a blow in this one
   };
   void begin(const World& world, const Response& response);
-  static void expect_motion(const RigidBody& rigid, OfBody& of);
+  static void expect_motion(const RigidBody& rigid, double dt, OfBody& of);
   void find(const World& world, const Neighbours& neighbours, const PairMethods& methods, FrameCost& cost);
   void begin_frame(const World& world, OfLink& of) const;
   void find(const World& world, std::size_t link, exact::ExactLink& search, double closing, FrameCost& cost);
