@@ -26,15 +26,16 @@ class ComparedFaces {
   }
 
   /// True if a place of the edge, where both are compared as equally far, lies within either face and inside of every
-  /// third face that shares a convex edge with one of them.
-  [[nodiscard]] bool are_outermost(const Vector3d& p) const {
-    return is_outermost(p, a_, b_) && is_outermost(p, b_, a_);
+  /// third face that shares a convex edge with one of them. @param c  its place p, of the mover's sample
+  [[nodiscard]] bool are_outermost(const Candidate& c) const {
+    return is_outermost(c, a_, b_) && is_outermost(c, b_, a_);
   }
 
  private:
   [[nodiscard]] const AnalyticSurface& surface(std::uint32_t face) const { return *pair_.base.faces[face].surface; }
 
-  [[nodiscard]] bool is_outermost(const Vector3d& p, std::uint32_t face, std::uint32_t other) const {
+  [[nodiscard]] bool is_outermost(const Candidate& c, std::uint32_t face, std::uint32_t other) const {
+    const Vector3d& p = c.p;
     const SurfaceAt here = surface(face).at(p);
     const Trim::Answer answer = pair_.base.faces[face].trim->find(surface(face), p - here.distance * here.normal);
     for (const std::uint32_t e : answer.edges) {
@@ -46,7 +47,10 @@ class ComparedFaces {
       const bool leads = compared.other > compared.mine && edge.limits_face_at(face, p, there.distance);
       const bool is_inside = there.distance < -pair_.motion.overlap - pair_.motion.thresholds.touching;
       // Where the third face and the other one meet concavely, the place is to be outside of the third; else of this.
-      if (leads == is_inside ? leads : meet_concavely(edge, face) == is_inside) return false;
+      if (leads == is_inside ? !leads : meet_concavely(edge, face) != is_inside) continue;
+      // Nor does the third own what it cannot push: an edge that ends just inside of it, flush with it.
+      const bool may_be_flush = there.distance <= 0 && here.distance > -kThinnest;
+      if (!may_be_flush || pair_.normal_cone_weight(c.sample, there.normal) > 0) return false;
     }
     return answer.where != Trim::Where::outside;
   }
@@ -117,7 +121,7 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
   // is a nanometre off either end, and the row is to be there before the step closes it.
   constexpr double kGoesOn = -1;
   return edge.limits_face_at(edge.faces[0], c.p, kGoesOn) && edge.limits_face_at(edge.faces[1], c.p, kGoesOn) &&
-         faces.are_outermost(c.p);
+         faces.are_outermost(c);
 }
 
 }  // namespace

@@ -242,7 +242,6 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
   }
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);
   if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c.p, c.at.distance);
-  constexpr double kThinnest = 1e-5;  // m: contacts are hardly ever so deep, walls never so thin
   if (c.at.distance < -kThinnest && comes_through_another(pair, c, face, foot)) return false;
   // Beside the border the foot is off the face: only an edge that it lies beyond can say that the face owns it.
   bool is_limited = answer.where != Trim::Where::beside;

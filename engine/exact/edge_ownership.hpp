@@ -10,6 +10,9 @@
 
 namespace verisim::exact {
 
+/// m: contacts are hardly ever so deep, walls never so thin. What is deeper may have come in through another face.
+inline constexpr double kThinnest = 1e-5;
+
 /// True if another of the face's edges hides one from a place: so the far side of a narrow rib or slot is no border of
 /// what lies beside its near side. A place that is beyond the near side, too, is still nearer to it.
 /// @param edges   of the face, near the place    @param across  of the place, from the face across edge e

@@ -17,11 +17,7 @@ inline constexpr double kSlack = 1e-9;  // m: more than double precision says of
 class Search {
  public:
   Search(const ExactBody& mover, const ExactBody& base, const RelativeMotion& motion, RowList& rows, SearchCost& cost)
-      : pair_{mover, base, motion},
-        is_found_again_(motion.is_found_again),
-        near_(mover, base, motion),
-        rows_(rows),
-        cost_(cost) {}
+      : pair_{mover, base, motion}, near_(mover, base, motion), rows_(rows), cost_(cost) {}
 
   double run(NodePairs& stack);
 
@@ -66,7 +62,6 @@ class Search {
 
   const BodyPair pair_;
   std::optional<RelativeMotion> still_ahead_, still_after_;  ///< of pair_at(), when first asked for
-  const bool is_found_again_;                                ///< for another motion than was expected
   NearPairs near_;
   RowList& rows_;
   SearchCost& cost_;

@@ -82,7 +82,7 @@ void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlo
       c.sample = block.begin + i;
       const bool crosses = cross_segment(when, edge, size, c) ||
                            (moves && (cross_segment(When::ahead, edge, size, c) ||
-                                      (is_found_again_ && cross_segment(When::after, edge, size, c))));
+                                      (pair_.motion.is_found_again && cross_segment(When::after, edge, size, c))));
       if (crosses && c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)

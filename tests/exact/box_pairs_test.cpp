@@ -97,5 +97,24 @@ TEST(FlushBodies, OfOneSizeStandOnEachOther) {
   expect_flush_bodies_meet(make(Solid::Kind::tube, {0.02, 0.012, 0.03}), 0.03, 0.02);
 }
 
+// Flush to a third of a micrometre: the corner of either may be off the other's face, and where the edges cross holds
+// it.
+TEST(FlushBodies, OfWhichACornerIsDeepAreHeldThere) {
+  constexpr double kSide = 0.03;
+  Pair pair(make(Solid::Kind::box, {kSide, kSide, kSide}), make(Solid::Kind::box, {kSide, kSide, kSide}), 0.01);
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    Draw draw(seed);
+    const double depth = std::pow(10, draw.between(-6, -5));
+    const Vector3d lean = draw.in_box({1, 1, 0}).normalized() * (depth / kSide);
+    const Vector3d off = draw.in_box({3e-7, 3e-7, 0});
+    const Pose X{{off.x(), off.y(), kSide}, rotation_from_vector(lean)};  // one corner is as deep as the other is high
+    const double corner = 0.5 * kSide * (std::abs(lean.x()) + std::abs(lean.y()));
+    double found = 0;
+    for (const ContactRow& row : pair.rows_at(X, kMargin))
+      if (row.normal.z() > 0.999) found = std::max(found, -row.gap);
+    ASSERT_GT(found, 0.9 * corner) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace verisim::exact::test::box_pairs_test

@@ -159,7 +159,6 @@ void ExactResponse::begin(const World& world, const Response& response) {
     if (!world.bodies[i].exact || !world.moves(world.bodies[i])) continue;
     of.step = begin_implicit(world.bodies[i].rigid, response.loads(i), world.dt);
     of.velocity = of.step.free;
-    of.last_change *= world.busy.size() > exact::ConvexStep::kDenseMax ? 0 : 1;  // in a heap nothing goes on as it did
     expect_motion(world.bodies[i].rigid, world.dt, of);
     of.speed = speed_of(world.bodies[i], of.velocity);
   }
