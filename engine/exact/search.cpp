@@ -119,15 +119,14 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     *next = kOutOfReach;
     (void)evaluate_segment(placed, curve, count, face, c);  // counts its depth
   }
-  add_face_row(placed, best, count, face);
   const bool is_corner = placed.feature->half_width == 0;
   if (placed.feature->own_face != kNoFace || is_corner) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
     add_face_row(placed, strongest, count, face);
   }
-  if (best.gap_ahead >= 0) return;
-  for (const int side : {-1, 1}) add_group_end(placed, curve, best, std::span(estimates).first(count), side, face);
+  if (best.gap_ahead < kSlack) add_group_ends(placed, curve, best, std::span(estimates).first(count), face);
+  add_face_row(placed, best, count, face);
 }
 
 /// A closest place at the end of its segment may go on in the next one, whose estimate, a parabola's about its middle,
@@ -250,35 +249,57 @@ void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, 
     add(surface.at(placed_by(*there, *placed.feature).point(best.place)).normal);
 }
 
-/// Adds a row for the end of a coincident group on the given side (-1 or 1). All places of such a group are about
-/// equally near, so the closest one changes from frame to frame, and a single row would let the body tip over it. The
-/// end has a row of one segment if it may be closer than the closest place at the end of the step: a contact that stops
-/// one place by some distance turns the bodies by about that distance over their size. If the face does not accept the
-/// end, the outermost segment that it accepts is taken.
-void Search::add_group_end(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
-                           std::span<const double> gaps_ahead, int side, std::uint32_t face) {
+/// The end of a coincident group on the given side (-1 or 1), if it may be closer than the closest place at the end of
+/// the step: a contact that stops one place by some distance turns the bodies by about that distance over their size.
+/// If the face does not accept the end, the outermost segment that it accepts is taken.
+std::optional<Candidate> Search::group_end(const PlacedFeature& placed, const CurveFromSurface& curve,
+                                           const Candidate& best, std::span<const double> gaps_ahead, int side,
+                                           std::uint32_t face) {
   const double half = placed.feature->half_width;
   const int count = static_cast<int>(gaps_ahead.size());
   const int here = static_cast<int>(best.sample - best.group);
   const auto is_coincident = [&](double gap_ahead, double away) {
-    return gap_ahead < best.gap_ahead * (1 - away / pair_.motion.size);
+    return gap_ahead < best.gap_ahead * (1 - away / pair_.motion.size) + kSlack;
   };
   for (int i = side > 0 ? count - 1 : 0; side * (i - here) >= 0; i -= side) {
     const double offset = side * (2 * half * (i - here) - best.place.t) + half;  // in t, from the closest place
-    if (offset < pair_.motion.thresholds.end_apart * (2 * half * count)) return;
+    if (offset < pair_.motion.thresholds.end_apart * (2 * half * count)) break;
     const double ahead = gaps_ahead[static_cast<std::size_t>(i)];
     if (ahead == kOutOfReach) continue;
-    if (!is_coincident(ahead, offset / half * placed.feature->half_length)) return;
+    if (!is_coincident(ahead, offset / half * placed.feature->half_length)) break;
     Candidate c;
     c.group = best.group;
     c.sample = best.group + static_cast<std::uint32_t>(i);
     c.place = place_at(placed.is_arc(), pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], side * half);
     if (!evaluate_candidate(placed, face, 1, c)) continue;
-    if (is_passed_by(placed, curve, c)) return;
-    if (is_coincident(c.gap_ahead, (c.p - best.p).norm()))
-      add_row(placed, c, 1, face, curving(pair_, placed, c, pair_.base.faces[face], 0));
-    return;
+    if (is_passed_by(placed, curve, c) || !is_coincident(c.gap_ahead, (c.p - best.p).norm())) break;
+    return c;
   }
+  return std::nullopt;
+}
+
+/// Adds the rows of a coincident group's ends. All places of such a group are about equally near, so the closest one
+/// changes from frame to frame, and a single row would let the body tip over it. The ends take from the closest place's
+/// weight so that the rows together resist as the group does, whose stiffness is spread evenly: the same sum, the same
+/// centre, and the same moment where the closest place is not too near an end for that.
+void Search::add_group_ends(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best,
+                            std::span<const double> gaps_ahead, std::uint32_t face) {
+  const auto count = static_cast<std::uint32_t>(gaps_ahead.size());
+  std::array<std::optional<Candidate>, 2> ends{group_end(placed, curve, best, gaps_ahead, -1, face),
+                                               group_end(placed, curve, best, gaps_ahead, 1, face)};
+  const auto away = [&](std::size_t i) { return ends[i] ? (ends[i]->p - best.p).norm() : 0; };
+  const std::array<double, 2> lever{away(0), away(1)};
+  double left = 1;
+  for (const std::size_t i : {0, 1}) {
+    if (!ends[i]) continue;
+    const double mine = lever[i];
+    const double other = lever[1 - i];
+    const double share = mine > 2 * other ? (mine - other) / (2 * mine) : std::max(2 * mine - other, 0.0) / (6 * mine);
+    left -= share;
+    ends[i]->weight *= share;
+    add_row(placed, *ends[i], count, face, curving(pair_, placed, *ends[i], pair_.base.faces[face], 0));
+  }
+  best.weight *= left;
 }
 
 /// Fraction of a group's length that touches. A group that slopes towards the surface leaves it where the rise has used

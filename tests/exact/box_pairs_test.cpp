@@ -2,6 +2,9 @@
 // theorem of separating axes, from poses alone. And bodies of one size, one flush on the other.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "tests/exact/scenes.hpp"
 #include "tests/length.hpp"
 
@@ -95,6 +98,28 @@ TEST(FlushBodies, OfOneSizeStandOnEachOther) {
   expect_flush_bodies_meet(make(Solid::Kind::box, {0.03, 0.03, 0.03}), 0.03, 0.02);
   expect_flush_bodies_meet(make(Solid::Kind::cylinder, {0.015, 0.03}), 0.03, 0.015);
   expect_flush_bodies_meet(make(Solid::Kind::tube, {0.02, 0.012, 0.03}), 0.03, 0.02);
+}
+
+// Boxes in a heap fall together: without contact neither moves against the other, and any quarter may be pressed next.
+// The ends of groups share what lies between them, so quarters differ by an end that hangs over, not by whose closest
+// place lies where.
+TEST(FlushBodies, ThatDoNotMoveAgainstEachOtherAreHeldInEveryQuarter) {
+  constexpr double kSide = 0.03;
+  Pair pair(make(Solid::Kind::box, {kSide, kSide, kSide}), make(Solid::Kind::box, {kSide, kSide, kSide}), 0.01);
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    Draw draw(seed);
+    const auto turn = [&](double most) { return draw.in_box({most, most, most}); };
+    const Vector3d off = draw.in_box({3e-7, 3e-7, 0});
+    const Pose X{{off.x(), off.y(), kSide}, rotation_from_vector(turn(3e-9))};
+    const Twist slow{Vector3d::Zero(), turn(1e-6)};
+    pair.link.find({}, {X, X.position, slow, slow}, kDt, kMargin, 1e-10);
+    std::array<double, 4> stiffness{};
+    for (const ContactRow& row : pair.link.rows().rows()) {
+      if (row.normal.z() > 0.999) stiffness[(row.point.x() > 0 ? 1 : 0) + (row.point.y() > 0 ? 2 : 0)] += row.stiffness;
+    }
+    const auto [least, most] = std::minmax_element(stiffness.begin(), stiffness.end());
+    ASSERT_GT(*least, 0.8 * *most) << "seed " << seed;
+  }
 }
 
 // Flush to a third of a micrometre: the corner of either may be off the other's face, and where the edges cross holds
