@@ -74,6 +74,18 @@ class ComparedFaces {
   OwnershipRule rule_;
 };
 
+/// True if a straight edge ends on the face that it leaves faster: what lies there is held by what it lies on, and does
+/// not stumble over the other face's side of the edge. @param distance, slope  of the place from the face
+bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, double distance,
+                       double slope) {
+  if (placed.is_arc()) return false;
+  const Feature& feature = *placed.feature;
+  const std::vector<double>& middle = pair.mover.sample_c;
+  const double end =
+      slope > 0 ? middle[feature.begin] - feature.half_width : middle[feature.end - 1] + feature.half_width;
+  return std::abs(distance + (end - c.place.c) * slope) < pair.motion.thresholds.coincident;
+}
+
 /// The crossing by one rule.
 bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
                    const std::array<Place, 2>& near, Candidate& c) {
@@ -106,6 +118,10 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
   const double slope_a = at.a.normal.dot(tangent);
   const double slope_b = at.b.normal.dot(tangent);
   if (slope_a * slope_b >= 0) return false;
+  const bool a_is_steeper = std::abs(slope_a) > std::abs(slope_b);
+  if (lies_with_its_end(pair, placed, c, a_is_steeper ? at.a.distance : at.b.distance,
+                        a_is_steeper ? slope_a : slope_b))
+    return false;
   const double weight_a = slope_b / (slope_b - slope_a);
   const Vector3d mixed = weight_a * at.a.normal + (1 - weight_a) * at.b.normal;
   const double length = mixed.norm();

@@ -125,7 +125,8 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     strongest.weight -= best.weight;
     add_face_row(placed, strongest, count, face);
   }
-  if (best.gap_ahead < kSlack) add_group_ends(placed, curve, best, std::span(estimates).first(count), face);
+  if (placed.feature->half_width > 0 && best.gap_ahead < (is_plane(face) ? m.motion.margin : kSlack))
+    add_group_ends(placed, curve, best, std::span(estimates).first(count), face);
   add_face_row(placed, best, count, face);
 }
 
@@ -249,55 +250,65 @@ void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, 
     add(surface.at(placed_by(*there, *placed.feature).point(best.place)).normal);
 }
 
-/// The end of a coincident group on the given side (-1 or 1), if it may be closer than the closest place at the end of
-/// the step: a contact that stops one place by some distance turns the bodies by about that distance over their size.
-/// If the face does not accept the end, the outermost segment that it accepts is taken.
-std::optional<Candidate> Search::group_end(const PlacedFeature& placed, const CurveFromSurface& curve,
-                                           const Candidate& best, std::span<const double> gaps_ahead, int side,
-                                           std::uint32_t face) {
+/// The end of a group on the given side (-1 or 1), if it may be where the bodies touch at the end of the step. On a
+/// plane that is any end in reach: a blow elsewhere turns the body, and what lay flush is pressed in at its other end.
+/// Else it is one that may be closer than the closest place then: a contact that stops one place by some distance turns
+/// the bodies by about that distance over their size. If the face does not accept the end, the outermost segment that
+/// it accepts is taken.
+std::optional<Search::GroupEnd> Search::group_end(const PlacedFeature& placed, const CurveFromSurface& curve,
+                                                  const Candidate& best, std::span<const double> gaps_ahead, int side,
+                                                  std::uint32_t face) {
   const double half = placed.feature->half_width;
   const int count = static_cast<int>(gaps_ahead.size());
   const int here = static_cast<int>(best.sample - best.group);
+  const double reach = is_plane(face) ? pair_.motion.margin : -kOutOfReach;
   const auto is_coincident = [&](double gap_ahead, double away) {
     return gap_ahead < best.gap_ahead * (1 - away / pair_.motion.size) + kSlack;
+  };
+  const auto may_touch = [&](double gap_ahead, double away) {
+    return gap_ahead < reach || is_coincident(gap_ahead, away);
   };
   for (int i = side > 0 ? count - 1 : 0; side * (i - here) >= 0; i -= side) {
     const double offset = side * (2 * half * (i - here) - best.place.t) + half;  // in t, from the closest place
     if (offset < pair_.motion.thresholds.end_apart * (2 * half * count)) break;
     const double ahead = gaps_ahead[static_cast<std::size_t>(i)];
     if (ahead == kOutOfReach) continue;
-    if (!is_coincident(ahead, offset / half * placed.feature->half_length)) break;
+    if (!may_touch(ahead, offset / half * placed.feature->half_length)) break;
     Candidate c;
     c.group = best.group;
     c.sample = best.group + static_cast<std::uint32_t>(i);
     c.place = place_at(placed.is_arc(), pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], side * half);
     if (!evaluate_candidate(placed, face, 1, c)) continue;
-    if (is_passed_by(placed, curve, c) || !is_coincident(c.gap_ahead, (c.p - best.p).norm())) break;
-    return c;
+    const double away = (c.p - best.p).norm();
+    if (is_passed_by(placed, curve, c) || !may_touch(c.gap_ahead, away)) break;
+    return GroupEnd{c, is_coincident(c.gap_ahead, away)};
   }
   return std::nullopt;
 }
 
-/// Adds the rows of a coincident group's ends. All places of such a group are about equally near, so the closest one
-/// changes from frame to frame, and a single row would let the body tip over it. The ends take from the closest place's
-/// weight so that the rows together resist as the group does, whose stiffness is spread evenly: the same sum, the same
-/// centre, and the same moment where the closest place is not too near an end for that.
+/// Adds the rows of a group's ends. Where all places are about equally near, the closest one changes from frame to
+/// frame, and a single row would let the body tip over it. Ends that are as near take from the closest place's weight
+/// so that the rows together resist as the group does, whose stiffness is spread evenly: the same sum, the same centre,
+/// and the same moment where the closest place is not too near an end for that.
 void Search::add_group_ends(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best,
                             std::span<const double> gaps_ahead, std::uint32_t face) {
   const auto count = static_cast<std::uint32_t>(gaps_ahead.size());
-  std::array<std::optional<Candidate>, 2> ends{group_end(placed, curve, best, gaps_ahead, -1, face),
-                                               group_end(placed, curve, best, gaps_ahead, 1, face)};
-  const auto away = [&](std::size_t i) { return ends[i] ? (ends[i]->p - best.p).norm() : 0; };
-  const std::array<double, 2> lever{away(0), away(1)};
+  std::array<std::optional<GroupEnd>, 2> ends{group_end(placed, curve, best, gaps_ahead, -1, face),
+                                              group_end(placed, curve, best, gaps_ahead, 1, face)};
+  const auto lever = [&](std::size_t i) { return ends[i] && ends[i]->shares ? (ends[i]->place.p - best.p).norm() : 0; };
+  const std::array<double, 2> levers{lever(0), lever(1)};
   double left = 1;
   for (const std::size_t i : {0, 1}) {
     if (!ends[i]) continue;
-    const double mine = lever[i];
-    const double other = lever[1 - i];
+    Candidate& end = ends[i]->place;
+    const double mine = levers[i];
+    const double other = levers[1 - i];
     const double share = mine > 2 * other ? (mine - other) / (2 * mine) : std::max(2 * mine - other, 0.0) / (6 * mine);
-    left -= share;
-    ends[i]->weight *= share;
-    add_row(placed, *ends[i], count, face, curving(pair_, placed, *ends[i], pair_.base.faces[face], 0));
+    if (ends[i]->shares) {
+      left -= share;
+      end.weight *= share;
+    }
+    add_row(placed, end, count, face, curving(pair_, placed, end, pair_.base.faces[face], 0));
   }
   best.weight *= left;
 }

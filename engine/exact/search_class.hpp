@@ -54,9 +54,14 @@ class Search {
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
-  [[nodiscard]] std::optional<Candidate> group_end(const PlacedFeature& placed, const CurveFromSurface& curve,
-                                                   const Candidate& best, std::span<const double> gaps_ahead, int side,
-                                                   std::uint32_t face);
+  /// `shares`: the group's stiffness with the closest place.
+  struct GroupEnd {
+    Candidate place;
+    bool shares;
+  };
+  [[nodiscard]] std::optional<GroupEnd> group_end(const PlacedFeature& placed, const CurveFromSurface& curve,
+                                                  const Candidate& best, std::span<const double> gaps_ahead, int side,
+                                                  std::uint32_t face);
   void add_group_ends(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best,
                       std::span<const double> gaps_ahead, std::uint32_t face);
   void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);

@@ -149,7 +149,7 @@ GOLDEN = [
     ("peg_in_hole", ["--duration", "3"], "7cdec37d33ec6a8c"),
     ("peg_in_hole", ["--duration", "3", "--set", "hybrid=off"], "4bbc85249db629e9"),
     ("peg_in_hole_step", ["--duration", "3"], "bdf098e6627aed65"),
-    ("head_tracking", [], "075ada692eabd59b"),
+    ("head_tracking", [], "9dc6228fdeca4707"),
     ("slide", [], "f39e8a0886e200d2"),
     ("stack", [], "b2c06a22cbdf48ac"),
 ]

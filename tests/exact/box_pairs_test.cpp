@@ -101,8 +101,8 @@ TEST(FlushBodies, OfOneSizeStandOnEachOther) {
 }
 
 // Boxes in a heap fall together: without contact neither moves against the other, and any quarter may be pressed next.
-// The ends of groups share what lies between them, so quarters differ by an end that hangs over, not by whose closest
-// place lies where.
+// The ends of groups share what lies between them, so quarters differ by an end that hangs over and by where edges
+// cross, not by whose closest place lies where.
 TEST(FlushBodies, ThatDoNotMoveAgainstEachOtherAreHeldInEveryQuarter) {
   constexpr double kSide = 0.03;
   Pair pair(make(Solid::Kind::box, {kSide, kSide, kSide}), make(Solid::Kind::box, {kSide, kSide, kSide}), 0.01);
@@ -118,7 +118,7 @@ TEST(FlushBodies, ThatDoNotMoveAgainstEachOtherAreHeldInEveryQuarter) {
       if (row.normal.z() > 0.999) stiffness[(row.point.x() > 0 ? 1 : 0) + (row.point.y() > 0 ? 2 : 0)] += row.stiffness;
     }
     const auto [least, most] = std::minmax_element(stiffness.begin(), stiffness.end());
-    ASSERT_GT(*least, 0.8 * *most) << "seed " << seed;
+    ASSERT_GT(*least, 0.65 * *most) << "seed " << seed;
   }
 }
 

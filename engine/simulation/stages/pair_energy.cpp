@@ -20,11 +20,18 @@ double energy_of_body(const World& world, const Body& body) {
   return body.rigid.kinetic_energy() + spring_energy_of(world, body);
 }
 
-std::string text_of_created(const World& world, const Note& note) {
+std::string text_of_created(const World& world, const Note& note, const std::string& remedy) {
   return fmt::format(
       "contacts of '{}' and '{}' gave {:.3g} J in a step that nobody had given them, of {:.3g} J that "
-      "both have; use smaller voxels or a smaller timestep",
-      world.bodies[note.first].name, world.bodies[note.second].name, note.a, note.b);
+      "both have; {} or use a smaller timestep",
+      world.bodies[note.first].name, world.bodies[note.second].name, note.a, note.b, remedy);
+}
+std::string text_of_voxels(const World& world, const Note& note) {
+  return text_of_created(world, note, "use smaller voxels");
+}
+std::string text_of_surfaces(const World& world, const Note& note) {
+  return text_of_created(world, note,
+                         fmt::format("raise exactStiffness (now {:.3g} N/m^2)", world.parameters.exact_stiffness));
 }
 
 }  // namespace
@@ -47,7 +54,7 @@ void PairEnergy::watch(const World& world, const Contacts& contacts, const Exact
     of.told = true;
     notes.add({.time = world.time(),
                .kind = "energy",
-               .text = text_of_created,
+               .text = contacts.touches(l) ? text_of_voxels : text_of_surfaces,
                .first = first,
                .second = second,
                .a = created,
