@@ -90,6 +90,27 @@ def velocities(pose, dt):
     return (pose[2:, :3] - pose[:-2, :3]) / (2 * dt), axis * scale[:, None] / (2 * dt)
 
 
+def box_separations(poses, side):
+    """How far cubes of one size are apart in one frame, < 0: by how much they overlap: the theorem of separating axes.
+
+    poses: (n, 7). Returns {(i, j): m} of the pairs whose enclosing balls touch.
+    """
+    middle, turn = poses[:, :3], rotations(poses)
+    i, j = np.triu_indices(len(poses), 1)
+    way = middle[j] - middle[i]
+    near = (way**2).sum(axis=1) < 3 * side**2
+    i, j, way = i[near], j[near], way[near]
+    a, b = turn[i].transpose(0, 2, 1), turn[j].transpose(0, 2, 1)  # rows: the axes of each
+    crossed = np.cross(a[:, :, None], b[:, None]).reshape(len(i), 9, 3)
+    axes = np.concatenate([a, b, crossed], axis=1)
+    length = np.linalg.norm(axes, axis=2)
+    is_axis = length > 1e-4  # of parallel edges the others say it
+    axes = axes / np.where(is_axis, length, 1)[..., None]
+    reach = sum(np.abs(axes @ of.transpose(0, 2, 1)).sum(axis=2) for of in (a, b))
+    apart = np.where(is_axis, np.abs((axes * way[:, None]).sum(axis=2)) - 0.5 * side * reach, -1).max(axis=1)
+    return dict(zip(zip(i, j), apart))
+
+
 def cylinder_energy(pose, mass, dt=0.001, radius=0.01, height=0.03, g=9.81):
     """Kinetic and potential, of all poses but the first and the last."""
     v, w_world = velocities(pose, dt)
