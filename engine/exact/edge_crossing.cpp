@@ -43,7 +43,10 @@ class ComparedFaces {
       const std::uint32_t third = face_across(edge, face);
       if (edge.convexity != Convexity::convex || third == other) continue;
       const SurfaceAt there = surface(third).at(p);
-      const ComparedDistances compared = compared_by(pair_, rule_, p, here, there);
+      // Of what lies on the third face the rule that holds there: it may slide on.
+      const bool lies = std::abs(there.distance) < pair_.motion.thresholds.coincident;
+      const ComparedDistances compared =
+          lies ? compared_distances(pair_, p, here, there) : compared_by(pair_, rule_, p, here, there);
       const bool leads = compared.other > compared.mine && edge.limits_face_at(face, p, there.distance);
       const bool is_inside = there.distance < -pair_.motion.overlap - pair_.motion.thresholds.touching;
       // Where the third face and the other one meet concavely, the place is to be outside of the third; else of this.
@@ -74,16 +77,16 @@ class ComparedFaces {
   OwnershipRule rule_;
 };
 
-/// True if a straight edge ends on the face that it leaves faster: what lies there is held by what it lies on, and does
-/// not stumble over the other face's side of the edge. @param distance, slope  of the place from the face
-bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, double distance,
-                       double slope) {
-  if (placed.is_arc()) return false;
+/// True if a straight edge ends on the plane that it leaves faster: what lies there is held by what it lies on, and
+/// does not stumble over the other face's side of the edge. @param slope  of the edge, from the plane
+bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t face,
+                       const SurfaceAt& at, double slope) {
+  if (placed.is_arc() || pair.base.faces[face].surface->kind() != SurfaceKind::plane) return false;
   const Feature& feature = *placed.feature;
   const std::vector<double>& middle = pair.mover.sample_c;
   const double end =
       slope > 0 ? middle[feature.begin] - feature.half_width : middle[feature.end - 1] + feature.half_width;
-  return std::abs(distance + (end - c.place.c) * slope) < pair.motion.thresholds.coincident;
+  return std::abs(at.distance + (end - c.place.c) * slope) < pair.motion.thresholds.coincident;
 }
 
 /// The crossing by one rule.
@@ -118,9 +121,8 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
   const double slope_a = at.a.normal.dot(tangent);
   const double slope_b = at.b.normal.dot(tangent);
   if (slope_a * slope_b >= 0) return false;
-  const bool a_is_steeper = std::abs(slope_a) > std::abs(slope_b);
-  if (lies_with_its_end(pair, placed, c, a_is_steeper ? at.a.distance : at.b.distance,
-                        a_is_steeper ? slope_a : slope_b))
+  if (std::abs(slope_a) > std::abs(slope_b) ? lies_with_its_end(pair, placed, c, edge.faces[0], at.a, slope_a)
+                                            : lies_with_its_end(pair, placed, c, edge.faces[1], at.b, slope_b))
     return false;
   const double weight_a = slope_b / (slope_b - slope_a);
   const Vector3d mixed = weight_a * at.a.normal + (1 - weight_a) * at.b.normal;

@@ -13,8 +13,8 @@
 // Sampling and contact reduction. A curve is cut into segments no longer than the spacing. A segment has one sample,
 // its middle; the search moves it to the closest place of the segment (exact_link.hpp). A group of neighbouring
 // segments makes one row, that of its closest place. A group has at most four segments; on an arc it spans at most half
-// a radian, because farther places push in different directions. A group that coincides with the face has rows at its
-// ends as well.
+// a radian, because farther places push in different directions. A group that coincides with the face, or lies beside
+// a plane, has rows at its ends as well.
 //
 // Stiffness. An edge is a line of springs with `line_stiffness` per metre; a point counts as `point_length` of it. The
 // sum over samples so tends to an integral over the line as the spacing shrinks. The default is that of steel on steel

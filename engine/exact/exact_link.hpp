@@ -25,6 +25,7 @@
 //                   now or, where it does not yet, after the step (edge_crossing.hpp).
 //                   Beside its end at a corner that is not convex an edge goes on, as far as contacts are deep: what
 //                   slides down such a corner leaves the material through both of its walls, and has both rows.
+//                   A straight edge whose end lies on one of the two faces crosses no edge of it there.
 //   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
 //                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
 //                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.
@@ -34,8 +35,8 @@
 //   Culling         On coincident faces most samples are owned by another face or see the face from behind. Such
 //                   samples are rejected a block at a time (ownership_culling.hpp).
 //   Reduction       A group of segments has one row, at its closest place at the end of the step. A coincident group
-//                   has rows at its ends too. If the closest place has little weight, the candidate of the largest
-//                   weight has a row too.
+//                   has rows at its ends too, which share its stiffness; on a plane every end within the margin has a
+//                   row. If the closest place has little weight, the candidate of the largest weight has a row too.
 //   Hollows         A rim that slides round within a hollow, or a hollow one round a pin, has the row of its closest
 //                   place alone: one beside it would brake. Where the hollow is hardly wider, the closest place passes
 //                   much of it within a step: all of the rim's groups have rows, and a ball or a corner has rows all

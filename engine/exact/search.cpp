@@ -286,10 +286,16 @@ std::optional<Search::GroupEnd> Search::group_end(const PlacedFeature& placed, c
   return std::nullopt;
 }
 
+/// What part of an evenly spread stiffness the end of a line carries, of three springs: at both ends, `mine` and
+/// `other` [m] away, and between them. All three have the line's sum, centre and second moment (a sixth at each end if
+/// the third is in the middle). Where that asks for a spring that pulls, two of them have its sum and centre.
+double Search::share_of_end(double mine, double other) {
+  return mine > 2 * other ? (mine - other) / (2 * mine) : std::max(2 * mine - other, 0.0) / (6 * mine);
+}
+
 /// Adds the rows of a group's ends. Where all places are about equally near, the closest one changes from frame to
 /// frame, and a single row would let the body tip over it. Ends that are as near take from the closest place's weight
-/// so that the rows together resist as the group does, whose stiffness is spread evenly: the same sum, the same centre,
-/// and the same moment where the closest place is not too near an end for that.
+/// so that the rows together resist as the group does.
 void Search::add_group_ends(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best,
                             std::span<const double> gaps_ahead, std::uint32_t face) {
   const auto count = static_cast<std::uint32_t>(gaps_ahead.size());
@@ -301,10 +307,8 @@ void Search::add_group_ends(const PlacedFeature& placed, const CurveFromSurface&
   for (const std::size_t i : {0, 1}) {
     if (!ends[i]) continue;
     Candidate& end = ends[i]->place;
-    const double mine = levers[i];
-    const double other = levers[1 - i];
-    const double share = mine > 2 * other ? (mine - other) / (2 * mine) : std::max(2 * mine - other, 0.0) / (6 * mine);
     if (ends[i]->shares) {
+      const double share = share_of_end(levers[i], levers[1 - i]);
       left -= share;
       end.weight *= share;
     }

@@ -62,6 +62,7 @@ class Search {
   [[nodiscard]] std::optional<GroupEnd> group_end(const PlacedFeature& placed, const CurveFromSurface& curve,
                                                   const Candidate& best, std::span<const double> gaps_ahead, int side,
                                                   std::uint32_t face);
+  [[nodiscard]] static double share_of_end(double mine, double other);
   void add_group_ends(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best,
                       std::span<const double> gaps_ahead, std::uint32_t face);
   void add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face);

@@ -122,6 +122,29 @@ TEST(FlushBodies, ThatDoNotMoveAgainstEachOtherAreHeldInEveryQuarter) {
   }
 }
 
+// A hand slides the box flat over a groove. Held on this side, its lower edge comes to the far one: whichever way it
+// leans by less than anybody can make it, there is nothing to stumble over.
+TEST(FlushBodies, DoNotStumbleOverTheFarSideOfAGroove) {
+  constexpr double kThick = 0.02, kSide = 0.05, kGroove = 0.0005;
+  const Solid plate = combine(
+      Solid::Kind::difference, make(Solid::Kind::box, {0.32, 0.12, kThick}),
+      placed(make(Solid::Kind::box, {kGroove, 0.2, 0.01}), Pose{{0, 0, 0.5 * kThick}, Quaterniond::Identity()}));
+  Pair pair(plate, make(Solid::Kind::box, {kSide, kSide, kSide}), 0.01);
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    Draw draw(seed);
+    const double before = std::pow(10, draw.between(-6, -4.1));
+    const Vector3d lean = draw.in_box({1e-10, 1e-10, 0});
+    const Pose X{{0.5 * (kGroove - kSide) - before, draw.between(-0.01, 0.01), 0.5 * (kThick + kSide) - 1e-11},
+                 rotation_from_vector(lean)};
+    const Twist pressed{{0.1, 0, -0.006}, Vector3d::Zero()};
+    const Twist slides{{0.1, 0, 0}, Vector3d::Zero()};
+    pair.link.find({}, {X, X.position, pressed, slides}, kDt, kMargin, 1e-11);
+    for (const ContactRow& row : pair.link.rows().rows())
+      ASSERT_FALSE(row.normal.x() < -0.5 && row.gap + kDt * row.normal.dot(pressed.linear) < 0)
+          << "seed " << seed << ", " << before << " m before it, at " << row.point.transpose();
+  }
+}
+
 // Flush to a third of a micrometre: the corner of either may be off the other's face, and where the edges cross holds
 // it.
 TEST(FlushBodies, OfWhichACornerIsDeepAreHeldThere) {
