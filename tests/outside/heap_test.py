@@ -12,25 +12,26 @@ from scene_test import HERE, LONG, SceneTest
 
 SCENARIOS = os.path.join(HERE, os.pardir, os.pardir, "scenarios")
 SIDE, BOXES = 0.03, 100
-LAY = 1e-5  # m: what is as near, or as deep, lies on the other
+LAY = 1e-5  # m: what was no deeper lay on the other, or was apart from it
 
 
 class HeapTest(SceneTest):
     def pressed_in(self, seed):
-        """The farthest that a box which lay on another one is pressed into it within one step [m]."""
+        """The farthest that a box which lay on another one, or came to it, is inside of it after one step [m]."""
         boxes = self.run_scene("tray.lua", *(f"box{i + 1}" for i in range(BOXES)), folder=SCENARIOS, seed=seed,
-                               seconds=0.4, boxes=BOXES)
+                               seconds=0.6, boxes=BOXES)
         before, most = {}, 0
         for poses in np.stack([box.pose for box in boxes], axis=1):
             now = ruler.box_separations(poses, SIDE)
-            most = max([most] + [before[pair] - s for pair, s in now.items() if abs(before.get(pair, 1)) < LAY])
+            most = max([most] + [-s for pair, s in now.items() if before.get(pair, 1) > -LAY])
             before = now
         return most
 
-    def test_a_blow_from_elsewhere_presses_no_box_into_the_one_it_lies_on(self):
-        """It turns the box about the edge that moves least. Of the long form's draws four are beyond 50 um."""
+    def test_no_box_is_suddenly_inside_of_another(self):
+        """By 50 um: neither what lies, where a blow from elsewhere turns it about its other edge, nor what stands upright
+        on the same floor and slides up to it. Of the long form's 24 draws three are beyond."""
         most = sorted(self.pressed_in(seed) for seed in range(1, 25 if LONG else 5))
-        self.assertLess(most[-5 if LONG else -1], 5e-5)
+        self.assertLess(most[-4 if LONG else -1], 5e-5)
         self.assertLess(most[-1], 8e-5)
 
 
