@@ -39,6 +39,7 @@ struct Candidate {
   bool comes_down = false;   ///< is the place the closest of its segment then, and not now?
   Vector3d normal;           ///< unit, of the contact; that of the face, or of two crossing edges
   double edge_fraction = 0;  ///< 0: the normal is a face's; 1: it lies midway between the two faces of an edge
+  double descent = 0;        ///< of a crossing: how steeply the curve comes down to it along the face it leaves less
   double weight = 1;         ///< in [0, 1], scales the stiffness; below 1 where the place is not the mover's boundary
 };
 

@@ -76,11 +76,8 @@ double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const
   if (!placed.is_arc() && edge.extent == ExactEdge::Extent::line) return curving_of_lines(pair, placed, after, c, edge);
   const RelativeMotion no_motion = still(motion, motion.after());
   const BodyPair there{pair.mover, pair.base, no_motion};
-  const auto near = [&](std::size_t side) {
-    return closest_place_to(there, *pair.base.faces[edge.faces[side]].surface, after, c.sample);
-  };
   Candidate crossed = c;
-  if (!cross_edge(there, after, edge, {near(0), near(1)}, crossed)) return 0;
+  if (!cross_edge(there, after, edge, closest_places_to(there, after, edge, c.sample), crossed)) return 0;
   return curving_along(pair, way, crossed.gap - c.gap - c.normal.dot(way));
 }
 

@@ -1,5 +1,8 @@
 #include "engine/exact/edge_crossing.hpp"
 
+#include <cmath>
+#include <optional>
+
 #include "engine/exact/edge_ownership.hpp"
 
 namespace verisim::exact {
@@ -89,6 +92,36 @@ bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const 
   return std::abs(at.distance + (end - c.place.c) * slope) < pair.motion.thresholds.coincident;
 }
 
+/// How much farther from a plane one place of a curve may be than another [m].
+double rise_along(const PlacedFeature& placed, const Vector3d& n) {
+  const Feature& feature = *placed.feature;
+  const double x = n.dot(placed.x), y = n.dot(placed.y);
+  return placed.is_arc() ? 2 * std::sqrt(x * x + y * y)
+                         : std::abs(x) * 2 * feature.half_width * (feature.end - feature.begin);
+}
+
+/// Which plane of an edge, 0 or 1, a curve lies along that crosses the edge: to within the margin. Wherever it is
+/// deepest, it is to be held where it leaves its plane's face as well, for a blow turns it over that place. -1: none.
+int lies_along(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge) {
+  std::array<double, 2> rise{kOutOfReach, kOutOfReach};
+  for (const std::size_t side : {0, 1}) {
+    const AnalyticSurface& surface = *pair.base.faces[edge.faces[side]].surface;
+    if (surface.kind() == SurfaceKind::plane) rise[side] = rise_along(placed, surface.axis());
+  }
+  const std::size_t side = rise[0] < rise[1] ? 0 : 1;
+  return rise[side] < pair.motion.margin ? static_cast<int>(side) : -1;
+}
+
+/// What part the first face has in the normal of a crossing, whose slopes along the curve are these: the blend is
+/// perpendicular to the curve, or, if both are left the same way, the normal of the plane that the curve lies along.
+std::optional<double> weight_of_first(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
+                                      double slope_a, double slope_b) {
+  if (slope_a * slope_b < 0) return slope_b / (slope_b - slope_a);
+  const int along = lies_along(pair, placed, edge);
+  if (along < 0) return std::nullopt;
+  return along == 0 ? 1 : 0;
+}
+
 /// The crossing by one rule.
 bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
                    const std::array<Place, 2>& near, Candidate& c) {
@@ -120,17 +153,19 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
   const Vector3d tangent = placed.tangent(c.place);
   const double slope_a = at.a.normal.dot(tangent);
   const double slope_b = at.b.normal.dot(tangent);
-  if (slope_a * slope_b >= 0) return false;
+  const std::optional<double> weight = weight_of_first(pair, placed, edge, slope_a, slope_b);
+  if (!weight) return false;
+  const double weight_a = *weight;
   if (std::abs(slope_a) > std::abs(slope_b) ? lies_with_its_end(pair, placed, c, edge.faces[0], at.a, slope_a)
                                             : lies_with_its_end(pair, placed, c, edge.faces[1], at.b, slope_b))
     return false;
-  const double weight_a = slope_b / (slope_b - slope_a);
   const Vector3d mixed = weight_a * at.a.normal + (1 - weight_a) * at.b.normal;
   const double length = mixed.norm();
   if (length < pair.motion.thresholds.blade) return false;
   c.normal = mixed / length;
   c.gap = (weight_a * at.a.distance + (1 - weight_a) * at.b.distance) / length;
   c.edge_fraction = 4 * weight_a * (1 - weight_a);
+  c.descent = slope_a * slope_b < 0 ? std::min(std::abs(slope_a), std::abs(slope_b)) : 0;
   // A place that is outside by position is no overlap, whatever the edge by motion says of it.
   const double farthest = std::max(at.a.distance, at.b.distance);
   if (c.gap * length < std::min(0.0, farthest) - pair.motion.thresholds.coincident) return false;
@@ -154,6 +189,22 @@ Place closest_place_to(const BodyPair& pair, const AnalyticSurface& surface, con
                        pair.mover.sample_s[sample], half);
 }
 
+std::array<Place, 2> closest_places_to(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
+                                       std::uint32_t sample) {
+  const auto near = [&](std::size_t side) {
+    return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, sample);
+  };
+  std::array<Place, 2> places{near(0), near(1)};
+  const int along = lies_along(pair, placed, edge);
+  if (along < 0) return places;
+  // On its plane any place is as near: it crosses on the way from that which is closest to the other face.
+  const auto lies = static_cast<std::size_t>(along);
+  const double half = placed.feature->half_width;
+  places[lies] = place_at(placed.is_arc(), pair.mover.sample_c[sample], pair.mover.sample_s[sample],
+                          places[1 - lies].t > 0 ? -half : half);
+  return places;
+}
+
 bool may_cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge) {
   constexpr double kRounding = 1e-9;  // m, of a gap: more than double precision says of bodies of kilometres
   const AnalyticSurface& a = *pair.base.faces[edge.faces[0]].surface;
@@ -161,8 +212,9 @@ bool may_cross_edge(const BodyPair& pair, const PlacedFeature& placed, const Exa
   if (placed.is_arc() || a.kind() != SurfaceKind::plane || b.kind() != SurfaceKind::plane) return true;
   const double slope_a = a.axis().dot(placed.x);
   const double slope_b = b.axis().dot(placed.x);
-  if (slope_a * slope_b >= 0) return false;
-  const double weight_a = slope_b / (slope_b - slope_a);
+  const std::optional<double> weight = weight_of_first(pair, placed, edge, slope_a, slope_b);
+  if (!weight) return false;
+  const double weight_a = *weight;
   const double mixed =
       weight_a * (placed.origin - a.point()).dot(a.axis()) + (1 - weight_a) * (placed.origin - b.point()).dot(b.axis());
   const double length = (weight_a * a.axis() + (1 - weight_a) * b.axis()).norm();

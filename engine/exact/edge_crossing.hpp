@@ -12,6 +12,10 @@ namespace verisim::exact {
 [[nodiscard]] Place closest_place_to(const BodyPair& pair, const AnalyticSurface& surface, const PlacedFeature& placed,
                                      std::uint32_t sample);
 
+/// Likewise to the two faces of an edge, in their order.
+[[nodiscard]] std::array<Place, 2> closest_places_to(const BodyPair& pair, const PlacedFeature& placed,
+                                                     const ExactEdge& edge, std::uint32_t sample);
+
 /// False if no place of a straight feature crosses an edge of two planes within reach. All along the feature the normal
 /// and the gap of such a crossing are the same, so one look at both answers for all segments. True if the feature is
 /// curved or one of the faces is round: they have to be looked at one by one. About 50 flops.

@@ -75,13 +75,17 @@ bool falls_from_end(const BodyPair& pair, const PlacedFeature& placed, const Can
          c.place.t * other.normal.dot(placed.tangent(c.place)) > 0 && ends_at_concave_corner(pair, placed, c);
 }
 
-/// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies: then the
-/// neighbouring segment has a better place for it, or an edge of the base that the curve crosses there. At a concave
-/// corner there is none.
-bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
+/// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies, and the
+/// curve crosses the edge to the face across near there: then the neighbouring segment has a better place for it, or
+/// the crossing. What runs along the edge is held all along it. At a concave corner there is no neighbour.
+bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c,
+                          const SurfaceAt& other) {
   const double width = 2 * placed.feature->half_width;
   if (std::abs(c.place.t) < placed.feature->half_width) return false;
-  return std::abs(c.at.normal.dot(placed.tangent(c.place))) * width > pair.motion.thresholds.coincident &&
+  const Vector3d tangent = placed.tangent(c.place);
+  const double fall = std::abs(c.at.normal.dot(tangent)) * width;
+  const double lead = std::abs(c.at.distance - other.distance);
+  return fall > pair.motion.thresholds.coincident && lead < 2 * (fall + std::abs(other.normal.dot(tangent)) * width) &&
          !ends_at_concave_corner(pair, placed, c);
 }
 
@@ -150,6 +154,20 @@ double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Ana
   return std::min(off(c.at.normal), off(after.normalized()));
 }
 
+/// How a place above a face comes down beside the one across an edge: over this face, past it, or neither.
+enum class Slide : std::uint8_t { over, past, free };
+
+/// What was led along the other face's border is pressed into it, no deeper than these bodies are. If that one can push
+/// it, it goes past, and does not catch on an edge that it overlaps by nanometres.
+Slide slide_past(const BodyPair& pair, const Candidate& c, const SurfaceAt& there) {
+  constexpr double kRounding = 1e-9;  // m
+  const double coincident = pair.motion.thresholds.coincident;
+  if (there.distance < -pair.motion.overlap - kRounding) return Slide::over;
+  const bool is_pushed =
+      there.distance <= 0 && c.at.distance > -coincident && pair.normal_cone_weight(c.sample, there.normal) >= 1;
+  return is_pushed ? Slide::past : Slide::free;
+}
+
 /// What a face keeps of a place that the face across a convex edge owns: from 0, nothing, to 1. The face across can
 /// push only along normals of the mover's normal cone; where its own is outside of that cone, and so is that of edge
 /// against edge, nothing would push at all, and the place stays with this face; so does one flush with the face across.
@@ -165,7 +183,8 @@ double kept_share(const BodyPair& pair, const PlacedFeature& placed, const Exact
     least = std::min(least, there.distance + there.normal.dot(pair.moved(c.p, pair.motion.last_twist)));
   const double depth = -least;
   const double taken = falls_from_end(pair, placed, c, there) ? 0 : pair.normal_cone_weight(c.sample, there.normal);
-  if (taken >= 1 || depth <= -pair.motion.thresholds.coincident || falls_beyond_segment(pair, placed, c)) return 0;
+  if (taken >= 1 || depth <= -pair.motion.thresholds.coincident || falls_beyond_segment(pair, placed, c, there))
+    return 0;
   std::array<Place, 2> near = {c.place, c.place};
   const std::size_t across = edge.faces[0] == face ? 1 : 0;
   near[across] = closest_place_to(pair, *pair.base.faces[edge.faces[across]].surface, placed, c.sample);
@@ -243,6 +262,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);
   if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c.p, c.at.distance);
   if (c.at.distance < -kThinnest && comes_through_another(pair, c, face, foot)) return false;
+  Slide slides = Slide::free;
   // Beside the border the foot is off the face: only an edge that it lies beyond can say that the face owns it.
   bool is_limited = answer.where != Trim::Where::beside;
   for (const std::uint32_t e : answer.edges) {
@@ -259,12 +279,13 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     const bool counts = !is_limited && (is_convex || there.distance < 0);
     if ((!is_mine || counts) && is_hidden(pair.base, face, answer.edges, e, c.p, there)) continue;
     is_limited = is_limited || counts;
+    if (is_mine && is_convex) slides = std::min(slides, slide_past(pair, c, there));
     if (is_mine) continue;
     if (!is_convex) return false;
     c.weight *= kept_share(pair, placed, edge, face, there, c);
     if (!(c.weight > 0)) return false;
   }
-  return is_limited;
+  return is_limited && slides != Slide::past;
 }
 
 }  // namespace verisim::exact

@@ -46,6 +46,7 @@ class Search {
     return direction + pair_.motion.dt * pair_.motion.free_twist.angular.cross(direction);
   }
   [[nodiscard]] bool is_back_facing(const SampleBlock& block, const Vector3d& normal) const;
+  [[nodiscard]] double share_of_crossing(const Candidate& c, double length) const;
   [[nodiscard]] double touching_fraction(const PlacedFeature& placed, const Candidate& c, std::uint32_t count) const;
   [[nodiscard]] bool evaluate_candidate(const PlacedFeature& placed, std::uint32_t face, std::uint32_t count,
                                         Candidate& c);

@@ -91,16 +91,20 @@ void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlo
   }
 }
 
+/// What part of a group's stiffness a crossing has. Where the group lies on one of the faces to rounding, the crossing
+/// is the end of what touches there, and has an end's share.
+double Search::share_of_crossing(const Candidate& c, double length) const {
+  const double share = share_of_end(1, 1);
+  return share + (1 - share) * std::min(1.0, c.descent * length / pair_.motion.thresholds.coincident);
+}
+
 /// The crossing of a candidate's segment with an edge. That after the step is looked at from where it is now: its gap
 /// is such that the motion which is assumed leads to it. @returns whether there is one
 bool Search::cross_segment(When when, const ExactEdge& edge, std::uint32_t count, Candidate& c) {
   const BodyPair pair = pair_at(when);
   const PlacedFeature placed = when == When::now ? placed_ : placed_by(pair.motion.now, *placed_.feature);
-  const auto near = [&](std::size_t side) {
-    return closest_place_to(pair, *pair.base.faces[edge.faces[side]].surface, placed, c.sample);
-  };
   cost_.closest_places += 2;
-  if (!cross_edge(pair, placed, edge, {near(0), near(1)}, c)) return false;
+  if (!cross_edge(pair, placed, edge, closest_places_to(pair, placed, edge, c.sample), c)) return false;
   c.comes_down = when != When::now;
   if (c.comes_down) {
     const RelativeMotion& motion = pair_.motion;
@@ -109,6 +113,7 @@ bool Search::cross_segment(When when, const ExactEdge& edge, std::uint32_t count
     if (!(c.gap > motion.thresholds.coincident)) return false;  // what lies is held by what it lies on
   }
   if (!is_near(placed_, count, c)) return false;
+  c.weight *= share_of_crossing(c, 2 * placed_.feature->half_width * count);
   c.weight *= pair.edge_cone_weight(c.sample, c.normal);
   if (c.weight > 0 && !c.comes_down) depth_max_ = std::max(depth_max_, -c.at.distance);
   return true;
