@@ -39,4 +39,14 @@ std::string own_file() {
   return std::filesystem::canonical(name, ignored).string();
 }
 
+std::string own_program(const std::string& name) {
+  constexpr const char* kInstalled = "libexec/verisim";  // below the prefix; engine/api/CMakeLists.txt
+  const std::filesystem::path folder = std::filesystem::path(own_file()).parent_path(), above = folder.parent_path();
+  std::error_code ignored;
+  for (const std::filesystem::path& place : {folder, above, above / kInstalled, above.parent_path() / kInstalled}) {
+    if (std::filesystem::exists(place / name, ignored)) return (place / name).string();
+  }
+  return {};
+}
+
 }  // namespace verisim

@@ -22,8 +22,6 @@ extern char** environ;
 namespace verisim {
 namespace {
 
-constexpr const char* kInstalled = "libexec/verisim";  // below the prefix of `cmake --install`
-
 /// A descriptor that is closed with its owner.
 class Descriptor {
  public:
@@ -160,14 +158,10 @@ class Exchange {
 
 std::string cad_program() {
   if (const char* named = std::getenv("VERISIM_CAD"); named != nullptr && *named != '\0') return named;
-  std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::path(own_file()).parent_path(), above = folder.parent_path();
-  for (const std::filesystem::path& place : {folder, above, above / kInstalled, above.parent_path() / kInstalled}) {
-    if (std::filesystem::exists(place / "verisim-cad", ignored)) return place / "verisim-cad";
-  }
+  if (std::string program = own_program("verisim-cad"); !program.empty()) return program;
   fail(ErrorKind::io,
        "verisim-cad is not beside this program (in '{}'); build or install it there, or name it in VERISIM_CAD",
-       folder.string());
+       std::filesystem::path(own_file()).parent_path().string());
 }
 
 Message ask_cad(const Message& request, const std::string& subject, double time_limit_s) {

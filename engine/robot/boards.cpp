@@ -11,9 +11,10 @@ namespace verisim::robot {
 std::unique_ptr<firmware::Board> make_board(const std::string& name) {
   VERISIM_ASSERT(name == "host" || name == "avr");
   if (name == "host") return firmware::make_host_board();
-  const std::filesystem::path folder = std::filesystem::path(own_file()).parent_path();
+  std::string program = own_program("verisim-avr");
+  if (program.empty()) program = std::filesystem::path(own_file()).parent_path() / "verisim-avr";  // for the error
   try {
-    return firmware::make_avr_board((folder / "verisim-avr").string());
+    return firmware::make_avr_board(program);
   } catch (const std::runtime_error& error) {
     fail(ErrorKind::input, "board \"avr\": {}; board \"host\" runs the same firmware as plain functions", error.what());
   }

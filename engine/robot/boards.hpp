@@ -9,7 +9,7 @@
 namespace verisim::robot {
 
 /// "host": the firmware as plain functions; "avr": its machine code on a simulated ATmega328P, in the program
-/// verisim-avr beside this one. Error(input) that says what is missing. @pre the name is one of them
+/// verisim-avr (own_program). Error(input) that says what is missing. @pre the name is one of them
 [[nodiscard]] std::unique_ptr<firmware::Board> make_board(const std::string& name);
 
 }  // namespace verisim::robot

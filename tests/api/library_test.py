@@ -90,6 +90,18 @@ class Installed(ProgramTest):
              self.path("step.h5"), env={"PATH": os.environ["PATH"]})
         must(program, "reproduce", "--only", "R1", "--quick", "-o", self.path("r"), cwd=self.folder)
 
+    @unittest.skipUnless(os.path.exists(os.path.join(BUILD, "verisim-avr")), "verisim-avr is not built")
+    def test_the_installed_program_and_module_run_the_robots_machine_code(self):
+        scene = self.installed("share/verisim/scenarios/robot_gain.lua")
+        must(self.installed("bin/verisim"), "run", scene, "--set", "board=avr", "--duration", "0.05", "-o", self.path("a.h5"),
+             env={"PATH": os.environ["PATH"]})
+        said = self.python(f"""
+import verisim
+run = verisim.run({scene!r}, board="avr", duration=0.05, out="b.h5")
+print(run["cost/robot/robot/busy_cycles"][-1] == verisim.Run("a.h5")["cost/robot/robot/busy_cycles"][-1] > 0)
+""")
+        self.assertEqual(said, "True\n")
+
     def python(self, text, **options):
         """What a Python of Debian prints that has nothing but the installed module."""
         env = dict(os.environ, PYTHONPATH=self.installed("lib/python3/dist-packages"))
