@@ -19,6 +19,9 @@ auto with_failures(Work work) {
   }
 }
 
+/// Failure of the caller (Error(usage)) if `text` is not one line of UTF-8; `what` is what it is called.
+void check_line(const std::string& what, const std::string& text);
+
 /// "no body is called 'pni'; did you mean 'pin'?"
 [[nodiscard]] std::string unknown_name(const std::string& what, const std::string& name,
                                        const std::vector<std::string>& known);

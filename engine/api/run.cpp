@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/api/failures.hpp"
+#include "engine/base/text.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/recorded_run.hpp"
 #include "engine/session/warnings.hpp"
@@ -46,7 +47,23 @@ std::array<double, 6> Frame::contact_wrench(const std::string& body) const {
 
 namespace {
 
-RunOutcome outcome_of(const RecordedRun& run, const std::string& out) {
+/// What the command line refuses of its arguments: it would be cut at a NUL, or end in the run file and in messages.
+void check_texts(const RunRequest& request) {
+  if (request.scenario.empty()) fail(ErrorKind::usage, "scenario: is empty; name a Lua file");
+  check_line("scenario", request.scenario);
+  check_line("out", request.out);
+  for (const auto& [name, value] : request.parameters) {
+    check_line("a parameter's name", name);
+    if (const std::string fault = value_fault(value); !fault.empty())
+      fail(ErrorKind::usage, "{} {}: '{}'; write it as UTF-8", name, fault, shown(value, 60));
+  }
+  for (const auto& [name, source] : request.binds) {
+    check_line("a bind's name", name);
+    check_line("bind " + name, source);
+  }
+}
+
+RunOutcome outcome_of(const RecordedRun& run) {
   RunOutcome outcome;
   outcome.end = run.figures.end;
   outcome.error = run.loop.error;
@@ -59,11 +76,12 @@ RunOutcome outcome_of(const RecordedRun& run, const std::string& out) {
   if (const std::string fallback = fallback_warning(run.figures); !fallback.empty())
     outcome.warnings.push_back(fallback);
   outcome.json = to_json(run.figures);
-  outcome.out = out;
+  outcome.out = run.figures.run_file;
   return outcome;
 }
 
 RunOutcome run_to_its_end(const RunRequest& request) {
+  check_texts(request);
   if (request.threads == 0) fail(ErrorKind::usage, "threads: 0; at least one is wanted");
   ScenarioOptions options;
   options.path = end_of_links(request.scenario);
@@ -84,13 +102,13 @@ RunOutcome run_to_its_end(const RunRequest& request) {
   for (const Event& event : session.simulation->events())
     if (is_warning(event) || event.kind == "warning") warnings.push_back(event.text);
   const Frame::Implementation frame{*session.simulation, std::move(bodies)};
-  RecordOptions record{.file = request.out, .force = request.force};
+  RecordOptions record{.file = request.out, .another_name = request.another_name, .force = request.force};
   if (request.each_frame) record.after_frame = [&] { return request.each_frame(Frame(frame)); };
   const RecordedRun run = record_run(session, record);
   if (run.loop.end == LoopEnd::io_failed || run.loop.end == LoopEnd::refused)
     fail(static_cast<ErrorKind>(exit_code_of(run.loop.end)), "{}", run.loop.error);
   if (const std::string damage = damage_warning(store.get()); !damage.empty()) warnings.push_back(damage);
-  RunOutcome outcome = outcome_of(run, request.out);
+  RunOutcome outcome = outcome_of(run);
   outcome.warnings.insert(outcome.warnings.begin(), warnings.begin(), warnings.end());
   return outcome;
 }

@@ -83,7 +83,10 @@ struct Run::Implementation {
 };
 
 Run::Run(const std::string& path)
-    : implementation_(with_failures([&] { return std::make_unique<Implementation>(path); })) {}
+    : implementation_(with_failures([&] {
+        check_line("path", path);
+        return std::make_unique<Implementation>(path);
+      })) {}
 Run::~Run() = default;
 Run::Run(Run&&) noexcept = default;
 Run& Run::operator=(Run&&) noexcept = default;

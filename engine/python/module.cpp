@@ -97,12 +97,14 @@ PYBIND11_MODULE(_verisim, module) {
       .def_readwrite("duration", &verisim::RunRequest::duration)
       .def_readwrite("out", &verisim::RunRequest::out)
       .def_readwrite("force", &verisim::RunRequest::force)
+      .def_readwrite("another_name", &verisim::RunRequest::another_name)
       .def_readwrite("threads", &verisim::RunRequest::threads)
       .def_readwrite("prepared", &verisim::RunRequest::prepared);
 
   py::class_<verisim::RunOutcome>(module, "RunOutcome")
       .def_readonly("error", &verisim::RunOutcome::error)
       .def_readonly("warnings", &verisim::RunOutcome::warnings)
+      .def_readonly("out", &verisim::RunOutcome::out)
       .def_readonly("json", &verisim::RunOutcome::json);
   module.def("run", &run);
 

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import unittest
 import unittest.mock
 
@@ -115,6 +116,10 @@ class PythonModule(ProgramTest):
                 ("shorter than one frame", lambda: self.run_small(duration=1e-9)),
                 ("threads", lambda: self.run_small(threads=0)),
                 ("/dev/full", lambda: self.run_small(out="/dev/full")),
+                ("out: is empty; name a run file", lambda: self.run_small(out="")),
+                ("scenario: is empty; name a Lua file", lambda: verisim.run("", out=self.path("a.h5"))),
+                ("out: is empty; name a folder", lambda: verisim.batch(self.scenario, "")),
+                ("out has a control character .0x0a", lambda: self.run_small(out=self.path("a\nb.h5"))),
                 ("is not an HDF5 file", lambda: verisim.Run(self.scenario)),
                 ("holds no batch", lambda: verisim.Batch(self.folder))):
             with self.subTest(wanted), self.assertRaisesRegex(verisim.Failure, wanted):
@@ -124,6 +129,50 @@ class PythonModule(ProgramTest):
             run["state/body/box/poes"]
         with self.assertRaisesRegex(verisim.Failure, "no body is called 'bxo'; did you mean 'box'"):
             self.run_small(each_frame=lambda frame: frame.pose("bxo"))
+
+    def test_a_text_that_would_be_cut_at_a_nul_is_a_value_error(self):
+        self.run_small()
+        before = sorted(os.listdir(self.folder))
+        cut, a = "\0.h5", self.path("a.h5")
+        for wanted, call in (
+                ("scenario has a NUL", lambda: verisim.run(self.scenario + cut, out=a)),
+                ("scenario has a NUL", lambda: verisim.run(self.scenario.encode() + b"\0", out=a)),
+                ("scenario is not UTF-8", lambda: verisim.run("\udcff.lua", out=a)),
+                ("out has a NUL", lambda: self.run_small(out=a + cut)),
+                ("a parameter's name has a NUL", lambda: self.run_small({"word" + cut: "b"})),
+                ("word has a NUL", lambda: self.run_small(word="b" + cut)),
+                ("the name of a bind has a NUL", lambda: self.run_small(binds={"hand" + cut: a})),
+                ("bind hand has a NUL", lambda: self.run_small(binds={"hand": a + cut})),
+                ("path has a NUL", lambda: verisim.Run(a + cut)),
+                ("folder has a NUL", lambda: verisim.Batch(a + cut)),
+                ("scenario has a NUL", lambda: verisim.batch(self.scenario + cut, self.path("b"))),
+                ("out has a NUL", lambda: verisim.batch(self.scenario, self.path("b") + cut)),
+                ("design has a NUL", lambda: verisim.batch(self.scenario, self.path("b"), design=a + cut)),
+                ("what varies has a NUL", lambda: verisim.batch(self.scenario, self.path("b"), vary={"word" + cut: ["a"]})),
+                ("word has a NUL", lambda: verisim.batch(self.scenario, self.path("b"), vary={"word": ["a", cut]})),
+                ("random has a NUL", lambda: verisim.batch(self.scenario, self.path("b"), random=(2, {"speed": "1..2" + cut}))),
+                ("bind hand has a NUL", lambda: verisim.batch(self.scenario, self.path("b"), binds={"hand": a + cut}))):
+            with self.subTest(wanted), self.assertRaisesRegex(ValueError, wanted):
+                call()
+        with self.assertRaisesRegex(verisim.Failure, r"no field is called '/state/time\\x00s'; did you mean '/state/time'"):
+            verisim.Run(a)["state/time\0s"]  # noqa: B018
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_the_library_refuses_such_a_text_too(self):
+        from verisim import _verisim
+        for wanted, change in (("scenario has a control character .0x00", {"scenario": self.scenario + "\0"}),
+                               ("out has a control character .0x00", {"out": self.path("a.h5\0b")}),
+                               ("a parameter's name has a control", {"parameters": [("word\0", "b")]}),
+                               ("word has a control character", {"parameters": [("word", "b\0")]}),
+                               ("bind hand has a control", {"binds": [("hand", "b\0")]}),
+                               ("a bind's name has a control", {"binds": [("hand\0", "b")]})):
+            request = _verisim.RunRequest()
+            for name, value in {"scenario": self.scenario, "out": self.path("a.h5"), **change}.items():
+                setattr(request, name, value)
+            with self.subTest(wanted), self.assertRaisesRegex(verisim.Failure, wanted):
+                _verisim.run(request, None)
+        with self.assertRaisesRegex(verisim.Failure, "path has a control character .0x00"):
+            _verisim.RunFile(self.path("a.h5\0b"))
 
     def test_a_frame_that_was_kept_says_that_it_is_over(self):
         kept = []
@@ -221,6 +270,41 @@ except KeyboardInterrupt:
         for seed in (0, 1):
             alone = self.run_json("run", self.scenario, "--seed", seed, "--duration", 0.3, "-o", self.path("p.h5"))
             self.assertEqual(set(hashes[seed::2]), {alone["state_hash"]})
+
+    def in_own_folder(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+
+    def test_threads_without_out_have_a_file_each(self):
+        from concurrent.futures import ThreadPoolExecutor
+        self.in_own_folder()
+        together = threading.Barrier(3, timeout=60)
+
+        def one(seed):
+            return verisim.run("small.lua", seed=seed, each_frame=lambda frame: frame.number > 1 or together.wait() >= 0)
+
+        with ThreadPoolExecutor(3) as pool:
+            runs = list(pool.map(one, range(3)))
+        self.assertEqual({run.path for run in runs}, {"runs/small.h5", "runs/small-2.h5", "runs/small-3.h5"})
+        for seed, run in enumerate(runs):
+            self.assertEqual((run.attributes["seed"], run.summary["state_hash"] if "state_hash" in run.summary else
+                              run.attributes["state_hash"]), (seed, run.figures["state_hash"]))
+        self.assertEqual(verisim.run("small.lua", duration=0.1).path, "runs/small.h5")
+
+    def test_a_default_name_that_another_run_has_is_another(self):
+        self.in_own_folder()
+        inner = []
+
+        def each_frame(frame):
+            if frame.number == 200:  # its file has its name
+                inner.append(verisim.run("small.lua", duration=0.1))
+                inner.append(json.loads(self.succeed("run", "small.lua", "--duration", "0.1", "--json").stdout))
+                with self.assertRaisesRegex(verisim.Failure, "another run is writing it"):
+                    verisim.run("small.lua", out="runs/small.h5")
+
+        outer = verisim.run("small.lua", out="runs/small.h5", each_frame=each_frame)
+        self.assertEqual((outer.frames, inner[0].path, inner[0].frames), (300, "runs/small-2.h5", 100))
+        self.assertEqual(inner[1]["run_file"], "runs/small-2.h5")
 
     def test_the_json_of_a_run_is_the_programs(self):
         run = self.run_small()

@@ -9,14 +9,14 @@ import urllib.parse
 import warnings
 
 from ._verisim import Failure
-from .values import list_of, settings
+from .values import line_of, list_of, path_of, settings
 
 
 class Batch:
     """The folder of a batch. groups: outcomes and measures with their intervals."""
 
     def __init__(self, folder):
-        self.folder = os.fspath(folder)
+        self.folder = path_of("folder", folder)
         self._index = os.path.join(self.folder, "index.sqlite")
         if not os.path.exists(self._index):
             raise Failure(f"{self.folder}: holds no batch; name a folder of verisim batch")
@@ -46,23 +46,26 @@ def batch(scenario, out, parameters=None, *, vary=None, repeat=1, seed=None, des
           measure=False, keep="summary", time_limit=None, binds=None, **more):
     """Runs many: vary={"clearance": ["1mm", "0.1mm"]} is a grid, random=(1000, {"clearance": "1mm..5mm"}) draws, design
     a CSV file. parameters and more: as in run(). Goes on where a batch in the folder `out` stopped. Failure as the
-    program says it; a run that could not be done is a row, and a warning says how many there are."""
-    arguments = ["batch", os.fspath(scenario), "-o", os.fspath(out), "--json", "--repeat", str(repeat), "--keep", keep]
+    program says it; a run that could not be done is a row, and a warning says how many there are. ValueError: as of run()."""
+    out = path_of("out", out)
+    if not out:
+        raise Failure("out: is empty; name a folder")
+    arguments = ["batch", path_of("scenario", scenario), "-o", out, "--json", "--repeat", str(repeat), "--keep", keep]
     for key, values in (vary or {}).items():
-        arguments += ["--vary", f"{key}={list_of(key, values)}"]
+        arguments += ["--vary", f"{line_of('the name of what varies', key)}={list_of(key, values)}"]
     for key, text in settings(parameters, more):
         arguments += ["--set", f"{key}={text}"]
     for name, source in (binds or {}).items():
-        arguments += ["--bind", f"{name}={os.fspath(source)}"]
+        arguments += ["--bind", f"{line_of('the name of a bind', name)}={path_of(f'bind {name}', source)}"]
     for option, value in (("--seed", seed), ("--design", design), ("--jobs", jobs), ("--duration", duration),
                           ("--time-limit", time_limit)):
         if value is not None:
-            arguments += [option, os.fspath(value) if option == "--design" else str(value)]
+            arguments += [option, path_of("design", value) if option == "--design" else str(value)]
     if measure:
         arguments.append("--measure")
     if random is not None:
         draws, keys = random
-        arguments += ["--random", str(draws), *(f"{key}={text}" for key, text in keys.items())]
+        arguments += ["--random", str(draws), *(line_of("random", f"{key}={text}") for key, text in keys.items())]
     exit_code, printed, said = _ended([_program(), *arguments])
     lines = said.strip().splitlines()
     if exit_code not in (0, 1) or not printed:

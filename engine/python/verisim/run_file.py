@@ -3,6 +3,7 @@ import json
 import os
 
 from ._verisim import Failure, RunFile
+from .values import path_of
 
 
 class Run:
@@ -12,13 +13,13 @@ class Run:
     """
 
     def __init__(self, path, figures=None, warnings=(), error=""):
-        self._file = RunFile(os.fspath(path))
+        self._file = RunFile(path_of("path", path))
         self._read = {}
         self.fields = {field.path: field for field in self._file.fields()}
         try:
             self.attributes, self.summary = self._file.attributes, self._file.summary
         except UnicodeDecodeError as error:
-            raise Failure(f"{os.fspath(path)}: a text in it is no UTF-8; the file is damaged, simulate again") from error
+            raise Failure(f"{self.path}: a text in it is no UTF-8; the file is damaged, simulate again") from error
         self.figures = figures
         self.warnings = list(warnings)
         self.error = error

@@ -43,10 +43,11 @@ struct RunRequest {
   std::vector<std::pair<std::string, std::string>> binds{};       ///< as --bind: {"omni", "reach.csv"}
   std::optional<std::uint64_t> seed{};                            ///< else the scenario's
   std::optional<double> duration{};                               ///< s, simulated; else the scenario's
-  std::string out{};                                ///< run file to write; its folder is made; empty: none is written
-  bool force = false;                               ///< replace a plain file that is no run file
-  unsigned threads = 1;                             ///< same bits for any number
-  bool prepared = true;                             ///< use and keep prepared parts (VERISIM_CACHE)
+  std::string out{};          ///< run file to write; its folder is made; empty: none is written
+  bool force = false;         ///< replace a plain file that is no run file
+  bool another_name = false;  ///< while another run writes `out`: OUT-2.h5, OUT-3.h5 …; else that is a Failure
+  unsigned threads = 1;       ///< same bits for any number
+  bool prepared = true;       ///< use and keep prepared parts (VERISIM_CACHE)
   std::function<void(const std::string&)> print{};  ///< receives what the scenario prints; empty: only /events does
   std::function<bool(const Frame&)> each_frame{};   ///< called after every frame; false ends the run. May be empty
 };
@@ -61,12 +62,13 @@ struct RunOutcome {
   std::map<std::string, double> measures;  ///< measure() of the scenario
   std::vector<std::string> warnings;       ///< what the program says on stderr
   std::string json;                        ///< all that verisim run --json prints
-  std::string out;                         ///< as in the request
+  std::string out;                         ///< the run file; empty if none was asked for
 };
 
 /// Loads the scenario and runs it to its end. Nothing is said on stdout or stderr. Failure for bad input, also for a
-/// body that is refused when it comes near another, and if the file cannot be written. Costs what the program costs: a
-/// millisecond of simulated time takes some 10 us.
+/// body that is refused when it comes near another, for a path or name that is not one line of UTF-8 (a NUL in it would
+/// cut it), and if the file cannot be written. Costs what the program costs: a millisecond of simulated time takes some
+/// 10 us.
 [[nodiscard]] VERISIM_PUBLIC RunOutcome run(const RunRequest& request);
 
 /// "0.1.0"

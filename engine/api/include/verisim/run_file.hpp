@@ -49,7 +49,7 @@ class VERISIM_PUBLIC Run {
  public:
   using Attribute = std::variant<std::string, double, std::int64_t, std::uint64_t>;
 
-  /// Failure: it is not there, no run file, damaged.
+  /// Failure: it is not there, no run file, damaged; the path is not one line of UTF-8.
   explicit Run(const std::string& path);
   ~Run();
   Run(Run&&) noexcept;
