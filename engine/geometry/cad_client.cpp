@@ -16,6 +16,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/own_file.hpp"
+#include "engine/base/text.hpp"
 
 extern char** environ;
 
@@ -39,11 +40,13 @@ class Descriptor {
   int fd_;
 };
 
+enum class Heard { answer, errors_too };  ///< of a process: its stdout, or its stderr with it
+
 /// The running program. Its stdin and stdout are one socket pair each: unlike a pipe, a socket whose reader died can be
 /// written to without a SIGPIPE.
 class Process {
  public:
-  explicit Process(const std::string& program) {
+  explicit Process(const std::string& program, Heard heard = Heard::answer) {
     Descriptor child_in;
     Descriptor child_out;
     connect(to, child_in);
@@ -52,11 +55,14 @@ class Process {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, child_in.get(), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, child_out.get(), STDOUT_FILENO);
+    if (heard == Heard::errors_too) posix_spawn_file_actions_adddup2(&actions, child_out.get(), STDERR_FILENO);
     char* const arguments[] = {const_cast<char*>(program.c_str()), nullptr};
     const int failure = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failure != 0) {
       pid_ = -1;
+      if (failure == ENOMEM)
+        fail(ErrorKind::input, "{}: cannot be started: out of memory; give this program more", program);
       fail(ErrorKind::io, "{}: cannot be started ({}); build or install verisim-cad beside this program", program,
            std::generic_category().message(failure));
     }
@@ -137,13 +143,45 @@ class Exchange {
   bool closed_ = false;
 };
 
+constexpr int kNotLoaded = 127;  // exit code of the dynamic loader, as of shells
+
+/// Why it cannot be loaded, in the words of the dynamic loader: "libassimp.so.5: cannot open shared object file: …".
+/// It is started once more, for nothing, to hear them. Empty if it can be loaded now, or says nothing.
+std::string words_of_loader(const std::string& program) {
+  constexpr double kTimeLimit = 10;  // s
+  constexpr std::string_view kBefore = "error while loading shared libraries: ";
+  Process process(program, Heard::errors_too);
+  process.to.reset();  // it ends where it would read the request
+  std::string said = Exchange(process, {}).run(kTimeLimit).value_or("");
+  const int status = process.wait();
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != kNotLoaded) return {};
+  if (const std::size_t at = said.find(kBefore); at != std::string::npos) said.erase(0, at + kBefore.size());
+  return shown(said.substr(0, said.find('\n')));
+}
+
+/// What brings a library of the CAD kernel or the mesh reader; its own file's name has a version that changes.
+std::string advice_on(const std::string& library) {
+  if (library.starts_with("libTK")) return "apt install libocct-data-exchange-dev";
+  if (library.starts_with("libassimp")) return "apt install libassimp-dev";
+  return "install the package that has it (packages.txt)";
+}
+
+/// A library that is not there is no fault of the input: the same command works when it is. What lacks memory may be
+/// asking for too much.
+[[noreturn]] void fail_not_loaded(const std::string& subject) {
+  const std::string words = words_of_loader(cad_program());
+  const auto says = [&](std::string_view text) { return words.find(text) != std::string::npos; };
+  if (words.empty() || says("failed to map segment") || says("annot allocate"))
+    fail(ErrorKind::input, "{}: verisim-cad cannot be loaded: out of memory; give it more", subject);
+  if (!says("cannot open shared object file: No such file"))
+    fail(ErrorKind::io, "{}: verisim-cad cannot be loaded ({}); build or install it again", subject, words);
+  const std::string library = words.substr(0, words.find(':'));
+  fail(ErrorKind::io, "{}: verisim-cad cannot be loaded: the library {} is not installed; {}", subject, library,
+       advice_on(library));
+}
+
 [[noreturn]] void fail_crashed(const std::string& subject, int status) {
-  constexpr int kNotLoaded = 127;  // by the dynamic loader, as by shells
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotLoaded)
-    fail(ErrorKind::input,
-         "{}: verisim-cad cannot be loaded: out of memory, or a library is not installed; give it more memory, or see "
-         "packages.txt",
-         subject);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotLoaded) fail_not_loaded(subject);
   const std::string how = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
                                               : fmt::format("exit code {}", WEXITSTATUS(status));
   fail(ErrorKind::input,

@@ -17,8 +17,8 @@ inline constexpr double kCadTimeLimit = 120;  ///< s; the largest model known to
 /// Starts verisim-cad, sends the request and returns its answer. `subject` (a file's path) begins the error texts.
 /// Leaves no process and no descriptor behind. About 15 ms for starting the program.
 ///
-/// Errors: what the program reports, with its kind; Error(input) if it crashes or passes the time limit; Error(io) if
-/// it cannot be started.
+/// Errors: what the program reports, with its kind; Error(input) if it crashes, passes the time limit or is out of
+/// memory; Error(io) if it cannot be started, or lacks a library, which the text names with its package.
 /// @pre time_limit_s > 0
 [[nodiscard]] Message ask_cad(const Message& request, const std::string& subject, double time_limit_s = kCadTimeLimit);
 

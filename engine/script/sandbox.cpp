@@ -277,6 +277,7 @@ LuaFailure Sandbox::take_failure(lua_State* L, int status) {
   } else {
     failure.text = fmt::format("{}: the script raised an error that is no text", name_);
   }
+  if (!lacked_.empty() && failure.text.find(shown(lacked_)) != std::string::npos) failure.kind = ErrorKind::io;
   if (!says_where(failure.text)) failure.text = name_ + ": " + failure.text;
   failure.text += global_suggestion(L, failure.text);
   lua_pop(L, 1);

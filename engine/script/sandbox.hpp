@@ -25,9 +25,10 @@
 namespace verisim::script {
 
 /// The failure of a chunk or a call. `text` is one line that begins with FILE:LINE where that is
-/// known.
+/// known. `kind` is io if it tells what the system lacked when the script asked for something: no fault of the script.
 struct LuaFailure {
   std::string text;
+  ErrorKind kind = ErrorKind::input;
 };
 
 /// Of one charge: whatever is computed wrongly, the meter does not go round.
@@ -77,6 +78,10 @@ class Sandbox {
   /// Creation number of the object at `index` among all objects. It replaces the address wherever an order or a name is
   /// needed. @pre there is an object, here and below: a table, function, thread or full userdata
   [[nodiscard]] std::uint64_t creation_order(lua_State* L, int index) const;
+  /// Of an Error that becomes a Lua error: its kind, in case the script ends by it.
+  void remember(const Error& error) {
+    if (error.kind() == ErrorKind::io) lacked_ = error.what();
+  }
   /// Is `function` one whose work was declared when it was registered (set_function)?
   [[nodiscard]] bool is_declared(lua_CFunction function) const { return declared_.contains(function); }
   void declare(lua_CFunction function) { declared_.insert(function); }
@@ -119,6 +124,7 @@ class Sandbox {
   std::size_t userdata_offset_ = 0;  ///< from a userdata's block to its content; measured, not assumed
   std::vector<void (*)(void*)> destroyers_;
   std::string memory_where_;          ///< FILE:LINE at which memory ran out
+  std::string lacked_;                ///< text of the last Error(io) that became a Lua error
   std::uint64_t allowance_ = 0;       ///< units
   std::uint64_t allowance_left_ = 0;  ///< while no script runs
   int running_ = 0;                   ///< calls of Lua within each other that began here
@@ -168,7 +174,10 @@ int guarded(lua_State* L) {
   try {
     return F(L);
   } catch (const std::bad_alloc&) {
-    text = "out of memory";                // the process's: Lua's own is bounded and says so itself
+    text = "out of memory";  // the process's: Lua's own is bounded and says so itself
+  } catch (const Error& error) {
+    Sandbox::of(L).remember(error);
+    text = error.what();
   } catch (const std::exception& error) {  // never Lua's own exception: that is a pointer
     text = error.what();
   }

@@ -34,7 +34,8 @@ struct ScenarioOptions {
 class Scenario {
  public:
   /// Runs the script: builds the scene. Error(input) with file and line for a script error, unknown parameter (lists
-  /// them, suggests the nearest), time or memory limit, a file outside the scenario's folder.
+  /// them, suggests the nearest), time or memory limit, a file outside the scenario's folder. Error(io) if it asked for
+  /// something that the system lacks: a file handle, a library of verisim-cad.
   Scenario(const ScenarioOptions& options, Inputs& inputs);
   ~Scenario();
 

@@ -8,7 +8,7 @@ import time
 import unittest
 
 from batches import LIGHTER, LONG, SANITIZED, Batches, children
-from program import SOURCE
+from program import SOURCE, VERISIM
 
 
 class Designs(Batches):
@@ -158,6 +158,26 @@ class Failures(Batches):
         said = self.batch_json("b", "--vary", "misbehave=no,huge", "--memory-limit", 500, code=1)
         self.assertEqual((said["done"], said["memory"]), (1, 1), self.rows("b"))
         self.assertIn("memory", self.rows("b")[1]["error"])
+
+    def test_a_library_of_the_cad_program_that_is_not_installed_ends_the_batch(self):
+        # None of its runs has an answer, and each has one when the library is there.
+        with open(os.path.join(os.path.dirname(VERISIM), "verisim-cad"), "rb") as f:
+            program = f.read()
+        cad = self.write("cad", program.replace(b"libassimp.so.", b"libassimp.sx."))
+        os.chmod(cad, 0o755)
+        args = ["--vary", "speed=0.4,0.5", "--no-cache", "--jobs", "2"]
+        done = self.batch("b", *args, env={**os.environ, "VERISIM_CAD": cad})
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertRegex(done.stderr, r"the library libassimp\.sx\.\d+ is not installed; apt install libassimp-dev")
+        self.assertEqual(self.batch_json("b", *args)["done"], 2)
+
+    def test_a_cad_program_that_lacks_memory_is_a_row(self):
+        cad = self.write("cad", "#!/bin/sh\nexit 127\n")
+        os.chmod(cad, 0o755)
+        done = self.batch("b", "--no-cache", env={**os.environ, "VERISIM_CAD": cad})
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual([row["status"] for row in self.rows("b")], ["memory"])
+        self.assertIn("out of memory", self.rows("b")[0]["error"])
 
     def test_a_killed_worker_is_a_row_that_says_so(self):
         process = self.start("b", "--vary", "misbehave=no,hang", "--repeat", "2", "--jobs", "2")

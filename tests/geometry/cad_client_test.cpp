@@ -6,8 +6,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 
 #include "tests/geometry/models.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace verisim::cad_client_test {
 namespace {
@@ -75,6 +79,59 @@ TEST(AskCad, SaysWhereTheProgramShouldBe) {
   const Program program("/nowhere/verisim-cad");
   const std::string error = error_of(ErrorKind::io, [] { static_cast<void>(ask_cad(request("step"), "x.step")); });
   EXPECT_NE(error.find("/nowhere/verisim-cad"), std::string::npos) << error;
+}
+
+std::string error_of_program(const std::string& path, ErrorKind kind) {
+  const Program program(path.c_str());
+  std::string error = error_of(kind, [] { static_cast<void>(ask_cad(request("step"), "x.step")); });
+  expect_no_child_left();
+  return error;
+}
+
+/// The program, but what it is to be loaded with is called "BEGIN.so.X", which nobody has.
+std::string without_library(const test::Folder& folder, const std::string& begin) {
+  std::ifstream in(paths::in_build("verisim-cad"), std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  const std::size_t at = bytes.find(begin + ".so.");
+  EXPECT_NE(at, std::string::npos) << begin;
+  bytes.at(at + begin.size() + 4) = 'X';
+  const std::string path = folder.file("without " + begin);
+  std::ofstream(path, std::ios::binary) << bytes;
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+std::string script(const test::Folder& folder, const std::string& text) {
+  const std::string path = folder.file("script");
+  std::ofstream(path) << "#!/bin/sh\n" << text << "\n";
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+TEST(AskCad, NamesALibraryThatIsNotInstalledAndItsPackage) {
+  const test::Folder folder;
+  EXPECT_EQ(error_of_program(without_library(folder, "libassimp"), ErrorKind::io),
+            "x.step: verisim-cad cannot be loaded: the library libassimp.so.X is not installed; apt install "
+            "libassimp-dev");
+  EXPECT_EQ(error_of_program(without_library(folder, "libTKSTEP"), ErrorKind::io),
+            "x.step: verisim-cad cannot be loaded: the library libTKSTEP.so.X is not installed; apt install "
+            "libocct-data-exchange-dev");
+  EXPECT_EQ(
+      error_of_program(without_library(folder, "libsleef"), ErrorKind::io),
+      "x.step: verisim-cad cannot be loaded: the library libsleef.so.X is not installed; install the package that "
+      "has it (packages.txt)");
+}
+
+TEST(AskCad, TellsWantOfMemoryFromALibraryThatIsNotInstalled) {
+  const test::Folder folder;
+  const std::string wanted = "x.step: verisim-cad cannot be loaded: out of memory; give it more";
+#ifndef VERISIM_SANITIZED  // whose shadow memory is larger than any limit
+  const std::string limited = "ulimit -v 60000; exec '" + paths::in_build("verisim-cad") + "'";
+  EXPECT_EQ(error_of_program(script(folder, limited), ErrorKind::input), wanted);
+#endif
+  EXPECT_EQ(error_of_program(script(folder, "exit 127"), ErrorKind::input), wanted);
+  EXPECT_EQ(error_of_program(script(folder, "echo 'symbol lookup error: f' >&2; exit 127"), ErrorKind::io),
+            "x.step: verisim-cad cannot be loaded (symbol lookup error: f); build or install it again");
 }
 
 TEST(AskCad, LeavesNoDescriptorOpen) {

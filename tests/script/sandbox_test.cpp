@@ -131,6 +131,25 @@ TEST(Sandbox, CallsTheHandlerOfXpcall) {
       "");
 }
 
+int lack_a_library(lua_State*) {
+  fail(ErrorKind::io, "a library is not installed");
+}
+
+TEST(Sandbox, TellsWhatTheSystemLacksFromWhatTheScriptDoesWrong) {
+  BareSandbox sandbox;
+  set_global<lack_a_library, Charge::call>(sandbox.lua(), "lack");
+  const auto kind_of = [&](const std::string& text) {
+    EXPECT_FALSE(sandbox.load(sandbox.lua(), "test.lua", text));
+    const auto failure = sandbox.call(sandbox.lua(), 0, 0);
+    EXPECT_TRUE(failure);
+    return failure ? failure->kind : ErrorKind::usage;
+  };
+  EXPECT_EQ(kind_of("error('mine')"), ErrorKind::input);
+  EXPECT_EQ(kind_of("lack()"), ErrorKind::io);
+  EXPECT_EQ(kind_of("local ok, why = pcall(lack) error('a part: ' .. why)"), ErrorKind::io);
+  EXPECT_EQ(kind_of("pcall(lack) error('mine')"), ErrorKind::input);
+}
+
 TEST(Sandbox, SuggestsTheGlobalThatWasMeant) {
   BareSandbox sandbox;
   EXPECT_EQ(sandbox.failure_of("prnt(1)"),
