@@ -74,6 +74,18 @@ std::string gaps_of(const Body& first, const Body& second, Hybrid asked) {
   return text;
 }
 
+std::string why_off(const World& world, const Body& first, const Body& second) {
+  const auto is_named = [](Hybrid method) { return method->needs_entities(); };
+  if (is_named(lesser(first.method, second.method))) return {};
+  if (!is_named(world.parameters.hybrid) && !is_named(first.asked) && !is_named(second.asked)) return {};
+  std::string text;
+  for (const Body* body : {&first, &second})
+    if (!is_named(body->asked)) add_sentence(text, fmt::format("'{}' has hybrid = \"off\"", body->name));
+  if (world.parameters.contact == ContactMethod::fcl)
+    add_sentence(text, "contact = \"fcl\": triangles answered, as with hybrid = \"off\"");
+  return text;
+}
+
 std::string why_voxels(const Body& first, const Body& second, Hybrid asked) {
   std::string text = gaps_of(first, second, asked);
   const bool acts = first.entities != nullptr && second.entities != nullptr;

@@ -10,6 +10,7 @@
 namespace verisim {
 
 struct BodyDescription;
+struct World;
 
 struct KnownSurface {
   std::size_t parts = 0, parts_without_brep = 0;
@@ -28,6 +29,10 @@ struct KnownSurface {
 /// What is not known of the surfaces of two bodies and a method would need, and who said so: "3 of 12 faces of 'rod'
 /// are of a kind that is not known". Empty: nothing. Allocates: between frames.
 [[nodiscard]] std::string gaps_of(const Body& first, const Body& second, Hybrid asked);
+
+/// Why no method acts on two bodies although the scene names one, for them or for all. Empty: it names none, or one
+/// acts.
+[[nodiscard]] std::string why_off(const World& world, const Body& first, const Body& second);
 
 /// Why voxels answer contacts of two bodies for which a method was asked. Empty: they do not.
 [[nodiscard]] std::string why_voxels(const Body& first, const Body& second, Hybrid asked);

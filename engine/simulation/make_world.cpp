@@ -168,7 +168,8 @@ Body place_body(const Scene& scene, const World& world, std::size_t index) {
   body.rigid.omega = description.twist.angular;
   body.voxel_size = description.voxel_size;
   body.surface = known_surface(description);
-  body.method = p.contact == ContactMethod::fcl ? hybrid::off : description.hybrid.value_or(p.hybrid);
+  body.asked = description.hybrid.value_or(p.hybrid);
+  body.method = p.contact == ContactMethod::fcl ? hybrid::off : body.asked;
   body.hybrid_enabled = description.hybrid_enabled;
   body.selectable = description.selectable && !description.fixed;
   body.can_move = can_move(scene, index);

@@ -68,10 +68,11 @@ std::vector<PairAnswers> Simulation::answers() const {
     const std::size_t l = self.stages.neighbours.link_of(first, second);
     const Hybrid asked = PairMethods::asked_of(self.world, l);
     const PairTotals& total = self.recording.totals_of(l);
-    if (!asked->needs_entities() || total.contacts == 0) continue;
     const Body &a = self.world.bodies[first], &b = self.world.bodies[second];
+    const std::string off = why_off(self.world, a, b);
+    if (total.contacts == 0 || (!asked->needs_entities() && off.empty())) continue;
     PairAnswers of{first, second, a.name, b.name, asked->name(), total.contacts, total.by_voxels, {}};
-    if (of.by_voxels > 0) of.why = why_voxels(a, b, asked);
+    if (of.by_voxels > 0) of.why = off.empty() ? why_voxels(a, b, asked) : off;
     if (total.switched_off_frames > 0)
       of.why += fmt::format("{}switched off in {} of {} frames with contact", of.why.empty() ? "" : "; ",
                             total.switched_off_frames, total.frames);

@@ -37,7 +37,7 @@ using StageTimes = std::array<std::uint32_t, kStageNames.size()>;  ///< ns
 struct PairAnswers {
   std::size_t first = 0, second = 0;  ///< bodies
   std::string first_name, second_name;
-  std::string_view method;  ///< asked for
+  std::string_view method;  ///< asked for; off: for one of the two, or for all by contact = "fcl"
   std::uint64_t contacts = 0, by_voxels = 0;
   std::string why;  ///< voxels answered some; empty: they did not
 

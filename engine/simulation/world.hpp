@@ -36,9 +36,11 @@ struct Body {
   bool selectable = false;
   Bounds bounds_B;  ///< of its meshes
   Coupling coupling;
-  double voxel_size = 0;        ///< m
-  Hybrid method = hybrid::off;  ///< asked for; which one acts on a pair: hybrid_method.hpp
-  KnownSurface surface;         ///< as its models have it
+  double voxel_size = 0;       ///< m
+  Hybrid asked = hybrid::off;  ///< by the scene, for this body
+  Hybrid method =
+      hybrid::off;       ///< that, but off where triangles are asked; which one acts on a pair: hybrid_method.hpp
+  KnownSurface surface;  ///< as its models have it
 
   // constant once it is made, which is when another body first comes near (BodyMaker)
   std::shared_ptr<const VoxelBody> voxels;        ///< null: not made yet

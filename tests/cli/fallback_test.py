@@ -15,12 +15,12 @@ SANITIZED = os.environ["VERISIM_SANITIZE"] != ""  # ten times slower
 
 # A rod is pushed through a bush that knows its faces or not, and against its wall; a tray is near, never touched.
 BUSH = """
-local p = params{ brep = true, hybrid = "exact", off = false }
-defineSimulationParameters{ hybrid = p.hybrid, duration = 0.6 }
+local p = params{ brep = true, hybrid = "exact", off = false, contact = "voxmap", rod = "" }
+defineSimulationParameters{ hybrid = p.hybrid, contact = p.contact, duration = 0.6 }
 addObject{ name = "bush", fixed = true, voxelsize = mm(1), Model{ "bush.stl", scale = 0.001, brep = p.brep } }
 addObject{ name = "tray", fixed = true, voxelsize = mm(1), position = {0, 0, -0.041}, Solid.box{0.04, 0.04, 0.004} }
 local rod = addObject{ name = "rod", voxelsize = mm(1), position = {0, 0, 0.041}, density = 1000,
-                       Solid.cylinder{radius = 0.0098, height = 0.06} }
+                       hybrid = p.rod ~= "" and p.rod or p.hybrid, Solid.cylinder{radius = 0.0098, height = 0.06} }
 local hand = Devices.Hand{ name = "hand", path = {
   {position = {0, 0, 0.041}}, {position = {0, 0, 0.02}, speed = 0.1}, {position = {0.001, 0, 0.02}, speed = 0.02} } }
 addDevice(hand)
@@ -97,6 +97,16 @@ class Fallback(ProgramTest):
         run_file, summary, said = self.run_bush("--set", "hybrid=off")
         self.assertGreater(summary["by_voxels"], 0)
         self.assertEqual((summary["pairs"], self.counted(run_file)[2]), ([], []))
+
+    def test_triangles_and_a_body_that_is_off_are_told(self):
+        for options, why in ((["--set", "contact=fcl"], 'contact = "fcl": triangles answered, as with hybrid = "off"'),
+                             (["--set", "rod=off"], "'rod' has hybrid = \"off\"")):
+            run_file, summary, said = self.run_bush(*options)
+            (pair,) = self.assert_told(run_file, summary)
+            self.assertEqual((pair["hybrid"], pair["fraction"], pair["why"]), ("off", 1, why))
+            self.assertEqual((summary["exact_frames"], said.count("was asked for")), (0, 0))
+            table = self.succeed("run", self.path("bush.lua"), "-o", self.path("table.h5"), *options).stdout
+            self.assertIn(f"100 % of {pair['contacts']} contacts of bush and rod, off: {why}", table)
 
     def test_what_a_script_switches_off_is_told_and_warned_of(self):
         run_file, summary, said = self.run_bush("--set", "off=true")

@@ -127,9 +127,9 @@ TEST(Fallback, RestoreAndBlendSayThatTheyActOnVoxels) {
   }
 }
 
-TEST(Fallback, OffAndFclSayNothing) {
+TEST(Fallback, WhereNobodyNamedAMethodNothingIsSaid) {
   for (const ContactMethod contact : {ContactMethod::voxmap, ContactMethod::fcl}) {
-    Scene scene = pressed_pin(contact == ContactMethod::fcl ? hybrid::exact : hybrid::off);
+    Scene scene = pressed_pin(hybrid::off);
     scene.parameters.contact = contact;
     Simulation simulation(scene, {});
     simulation.step();
@@ -137,6 +137,40 @@ TEST(Fallback, OffAndFclSayNothing) {
     EXPECT_TRUE(simulation.answers().empty());
     EXPECT_TRUE(simulation.last_events().empty());
   }
+}
+
+// The contacts of triangles belong to no voxel whose faces would be known: the method that was named does not act.
+TEST(Fallback, OfTrianglesIsTold) {
+  for (const Hybrid method : {hybrid::restore, hybrid::blend, hybrid::exact}) {
+    Scene scene = pressed_pin(method);
+    scene.parameters.contact = ContactMethod::fcl;
+    const Said said = said_by(scene);
+    EXPECT_EQ(said.answers.method, "off");
+    EXPECT_EQ(said.answers.fraction(), 1);
+    EXPECT_EQ(said.answers.why, "contact = \"fcl\": triangles answered, as with hybrid = \"off\"");
+    EXPECT_EQ(said.totals.exact_frames, 0U) << "the scene was told before its first frame";
+  }
+}
+
+TEST(Fallback, OfABodyThatIsOffIsTold) {
+  Scene scene = pressed_pin(hybrid::exact);
+  scene.bodies[kPin].hybrid = hybrid::off;
+  Said said = said_by(scene);
+  EXPECT_EQ(said.answers.method, "off");
+  EXPECT_EQ(said.answers.fraction(), 1);
+  EXPECT_EQ(said.answers.why, "'pin' has hybrid = \"off\"");
+  EXPECT_EQ(said.totals.exact_frames, 0U) << "nobody asked for it";
+
+  scene = pressed_pin(hybrid::off);  // of the simulation, and one body has a method
+  scene.bodies[kPin].hybrid = hybrid::restore;
+  EXPECT_EQ(said_by(scene).answers.why, "'block' has hybrid = \"off\"");
+
+  scene = pressed_pin(hybrid::restore);
+  for (BodyDescription& body : scene.bodies) body.hybrid = hybrid::off;
+  scene.parameters.contact = ContactMethod::fcl;
+  EXPECT_EQ(said_by(scene).answers.why,
+            "'block' has hybrid = \"off\"; 'pin' has hybrid = \"off\"; contact = \"fcl\": triangles answered, as with "
+            "hybrid = \"off\"");
 }
 
 TEST(Fallback, OfTwoMeshesIsTold) {
