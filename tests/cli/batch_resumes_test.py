@@ -9,6 +9,9 @@ import unittest
 
 from batches import LIGHT, LIGHTER, LONG, MANY, SANITIZED, Batches, children
 
+# Runs a shell command where DISK is a disk of SIZE, which nobody else sees and which is gone with it.
+ON_A_DISK = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
+             'mount -t tmpfs -o size="$SIZE" none "$DISK" && eval "$0"']
 
 # A calendar that jumps back by a day at every look; the steady clock goes on.
 JUMPING = """
@@ -127,6 +130,7 @@ class Resumption(Batches):
         with self.database(path) as db:
             db.execute("UPDATE meta SET value = '0.0.9 (commit 123)' WHERE name = 'version'")
         self.refuse(3, ["index.sqlite", "0.0.9", "go on with that version", "-o"], *folder)
+        self.refuse(3, ["index.sqlite", "0.0.9", "go on with that version"], "batch", "merge", self.path("m"), self.path("b"))
         with self.database(path) as db:
             db.execute("PRAGMA user_version = 7")
         self.refuse(3, ["index.sqlite", "format 7", "-o"], *folder)
@@ -215,6 +219,26 @@ class Resumption(Batches):
         self.batch_json("b", *args)
         self.batch_json("c", *args)
         self.assertEqual(self.index("b"), self.index("c"))
+
+    def test_a_disk_that_is_really_full(self):
+        """A small tmpfs in a namespace of its own, from too small for the index's first page to one for half of it."""
+        if subprocess.run([*ON_A_DISK, "true"], env={**os.environ, "SIZE": "1m", "DISK": self.folder}, check=False,
+                          capture_output=True).returncode != 0:
+            self.skipTest("may not mount a small tmpfs here: a full disk was not tried")
+        os.mkdir(self.path("disk"))
+        args = ["batch", self.scenario, "--vary", "speed=0.4,0.45,0.5", "--repeat", "20", *LIGHT]
+        self.succeed(*args, "-o", self.path("plain"))
+        is_refused = '"$VERISIM" "$@" -o "$DISK/b" && exit 1; test $? = 5 || exit 1; '
+        goes_on = is_refused * 2 + ('mount -o remount,size=20m "$DISK"; "$VERISIM" "$@" -o "$DISK/b" --quiet && '
+                                    'cp "$DISK/b/index.csv" "$OUT"')
+        for size in ("4k", "60k", "100k", "200k"):
+            done = subprocess.run([*ON_A_DISK, goes_on, *args], capture_output=True, text=True, check=False, timeout=120,
+                                  env={**os.environ, "SIZE": size, "DISK": self.path("disk"), "OUT": self.path("on_disk.csv")})
+            self.assertEqual(done.returncode, 0, (size, done.stderr))
+            self.assertEqual(done.stderr.count("index.sqlite: cannot be written (database or disk is full); make room"), 2,
+                             (size, done.stderr))
+            with open(self.path("on_disk.csv"), "rb") as on_disk, open(self.path("plain/index.csv"), "rb") as plain:
+                self.assertEqual(on_disk.read(), plain.read(), size)
 
     def test_a_full_disk_under_run_files_is_no_row(self):
         def limit():

@@ -83,6 +83,12 @@ class Batches(Compare):
         report = self.compare(self.batch("a"), self.batch("b"), code=0)
         self.assertFalse([n for n in report["notes"] if "another time" in n])
 
+    def test_another_text_of_the_scenario_is_told(self):
+        other = self.compare(self.batch("a"), self.batch("b", scenario_sha256="11"), code=0)
+        self.assertIn("the text of the scenario is not the same", other["notes"])
+        same = self.compare(self.batch("a"), self.batch("c"), code=0)
+        self.assertNotIn("the text of the scenario is not the same", same["notes"])
+
     def test_times_are_paired_and_judged_by_a_wide_bound(self):
         rows = 30
         index = INDEX.split("\n")[0] + "\n" + "".join(
