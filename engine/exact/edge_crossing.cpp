@@ -100,7 +100,7 @@ double rise_along(const PlacedFeature& placed, const Vector3d& n) {
                          : std::abs(x) * 2 * feature.half_width * (feature.end - feature.begin);
 }
 
-/// Which plane of an edge, 0 or 1, a curve lies along that crosses the edge: to within the margin. Wherever it is
+/// Which plane of an edge, 0 or 1, a curve lies along that crosses the edge: to what the step may close. Wherever it is
 /// deepest, it is to be held where it leaves its plane's face as well, for a blow turns it over that place. -1: none.
 int lies_along(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge) {
   std::array<double, 2> rise{kOutOfReach, kOutOfReach};

@@ -115,7 +115,8 @@ bool Search::cross_segment(When when, const ExactEdge& edge, std::uint32_t count
   if (!is_near(placed_, count, c)) return false;
   c.weight *= share_of_crossing(c, 2 * placed_.feature->half_width * count);
   c.weight *= pair.edge_cone_weight(c.sample, c.normal);
-  if (c.weight > 0 && !c.comes_down) depth_max_ = std::max(depth_max_, -c.at.distance);
+  // What only lies along a face is deeper elsewhere.
+  if (c.weight > 0 && !c.comes_down && c.descent > 0) depth_max_ = std::max(depth_max_, -c.at.distance);
   return true;
 }
 
