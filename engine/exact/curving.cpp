@@ -20,20 +20,22 @@ Place closest_of(const BodyPair& pair, const PlacedFeature& placed, const Analyt
                        placed.feature->radius_slope);
 }
 
-/// The smallest gap to a face of the candidate's segment; with a count of 0 that of its place. If the group, of `count`
-/// segments, is nearer by more than what touches anyway, and on the face, that of the group.
-double closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactFace& face,
-                   std::uint32_t count) {
+/// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
+/// If the group, of `count` segments, is nearer by more than what touches anyway, and on the face, that of the group.
+SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactFace& face,
+                      std::uint32_t count) {
   const AnalyticSurface& surface = *face.surface;
   const auto gap_at = [&](const Place& place) {
-    return surface.at(placed.point(place)).distance - placed.feature->radius_at(place.c);
+    SurfaceAt at = surface.at(placed.point(place));
+    at.distance -= placed.feature->radius_at(place.c);
+    return at;
   };
   if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
-  const double of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
+  const SurfaceAt of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
   if (count == 1) return of_segment;
   const Place place = closest_of(pair, placed, surface, c.group, count);
-  const double of_group = gap_at(place);
-  if (of_group > of_segment - pair.motion.thresholds.touching) return of_segment;
+  const SurfaceAt of_group = gap_at(place);
+  if (of_group.distance > of_segment.distance - pair.motion.thresholds.touching) return of_segment;
   const Vector3d p = placed.point(place);
   const SurfaceAt at = surface.at(p);
   const Vector3d foot = p - at.distance * at.normal;
@@ -65,7 +67,10 @@ double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidat
   const PlacedFeature after = placed_by(motion.after(), feature);
   if (!placed.is_arc() && face.surface->kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
     return curving_along(pair, way, face.surface->axis().dot(after.point(c.place) - c.p - way));
-  return curving_along(pair, way, closest_gap(pair, after, c, face, count) - c.gap - c.at.normal.dot(way));
+  const SurfaceAt there = closest_gap(pair, after, c, face, count);
+  // A normal that turns so far says nothing of the one that it was: in a close fit other rows stop the body.
+  if ((there.normal - c.at.normal).norm() > motion.thresholds.kink) return 0;
+  return curving_along(pair, way, there.distance - c.gap - c.at.normal.dot(way));
 }
 
 double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) {

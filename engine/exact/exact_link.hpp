@@ -94,7 +94,8 @@ struct SearchThresholds {
   /// face's.
   double cone_of_edges = 0.5;
   double slow = 1e-5;  ///< m: what moves by less within a step moves along a line
-  /// Of its way: a gap that leaves its linear change by more has passed a kink, not a curve.
+  /// Of its way: a gap that leaves its linear change by more has passed a kink, not a curve; and, in radians, so has a
+  /// normal that turns by more.
   double kink = 0.4;
   double touching = 1e-6;      ///< m: a part of a segment as near as this touches
   double weight_enough = 0.5;  ///< below this weight the closest place does not carry its group alone

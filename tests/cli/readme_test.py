@@ -1,0 +1,32 @@
+"""README shows what the program prints now: what no clock has a part in, to the letter."""
+import os
+import re
+import unittest
+
+from program import ProgramTest, SOURCE
+
+
+def readme():
+    with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as f:
+        return f.read()
+
+
+class Readme(ProgramTest):
+    def test_the_batch_has_the_figures_that_it_shows(self):
+        shown = readme().split("## I run batches")[1].split("```")[1].strip().splitlines()
+        words = shown[0].removeprefix("$ build/verisim ").split()
+        words[words.index("-o") + 1] = self.path("pins")
+        words = [os.path.join(SOURCE, w) if w.startswith("scenarios/") else w for w in words]
+        printed = self.succeed(*words).stdout.strip().splitlines()
+        self.assertEqual(printed[1:], shown[2:])  # the first line names the folder
+
+    def test_the_ledgers_have_the_figures_that_it_shows(self):
+        shown = re.search(r"^passivity ledgers, J\n(.*?)  …$", readme(), re.M | re.S)[1].splitlines()
+        printed = self.succeed("stability", "--only", "ledgers").stdout.splitlines()
+        for line in shown[1:]:
+            begin = line.split("…")[0].split()
+            self.assertIn(begin, [other.split()[:len(begin)] for other in printed], line)
+
+
+if __name__ == "__main__":
+    unittest.main()
