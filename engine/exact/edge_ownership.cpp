@@ -154,7 +154,8 @@ double off_own_face(const BodyPair& pair, const PlacedFeature& placed, const Ana
   return std::min(off(c.at.normal), off(after.normalized()));
 }
 
-/// How a place above a face comes down beside the one across an edge: over this face, past it, or neither.
+/// How a place above a face comes down beside the one across an edge: over this face, past it, or neither. Of several
+/// edges the first of these that is true of one counts.
 enum class Slide : std::uint8_t { over, past, free };
 
 /// What was led along the other face's border is pressed into it, no deeper than these bodies are. If that one can push

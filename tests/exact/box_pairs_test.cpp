@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 
 #include "tests/exact/scenes.hpp"
 #include "tests/length.hpp"

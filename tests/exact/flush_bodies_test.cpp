@@ -40,6 +40,15 @@ TEST(FlushBodies, OfOneSizeStandOnEachOther) {
   expect_flush_bodies_meet(make(Solid::Kind::tube, {0.02, 0.012, 0.03}), 0.03, 0.02);
 }
 
+/// The least and the most stiffness that a quarter of a flat contact has [N/m].
+std::pair<double, double> stiffness_of_quarters(const std::vector<ContactRow>& rows) {
+  std::array<double, 4> stiffness{};
+  for (const ContactRow& row : rows)
+    if (row.normal.z() > 0.999) stiffness[(row.point.x() > 0 ? 1 : 0) + (row.point.y() > 0 ? 2 : 0)] += row.stiffness;
+  const auto [least, most] = std::minmax_element(stiffness.begin(), stiffness.end());
+  return {*least, *most};
+}
+
 // Boxes in a heap fall together: without contact neither moves against the other, and any quarter may be pressed next.
 // The ends of groups share what lies between them, so quarters differ by an end that hangs over and by where edges
 // cross, not by whose closest place lies where.
@@ -53,12 +62,8 @@ TEST(FlushBodies, ThatDoNotMoveAgainstEachOtherAreHeldInEveryQuarter) {
     const Pose X{{off.x(), off.y(), kSide}, rotation_from_vector(turn(3e-9))};
     const Twist slow{Vector3d::Zero(), turn(1e-6)};
     pair.link.find({}, {X, X.position, slow, slow}, kDt, kMargin, 1e-10);
-    std::array<double, 4> stiffness{};
-    for (const ContactRow& row : pair.link.rows().rows()) {
-      if (row.normal.z() > 0.999) stiffness[(row.point.x() > 0 ? 1 : 0) + (row.point.y() > 0 ? 2 : 0)] += row.stiffness;
-    }
-    const auto [least, most] = std::minmax_element(stiffness.begin(), stiffness.end());
-    ASSERT_GT(*least, 0.65 * *most) << "seed " << seed;
+    const auto [least, most] = stiffness_of_quarters(pair.link.rows().rows());
+    ASSERT_GT(least, 0.65 * most) << "seed " << seed;
   }
 }
 
@@ -98,12 +103,9 @@ TEST(FlushBodies, ThatArePressedInAreHeldInEveryQuarter) {
     const Pose X{{off.x(), off.y(), kSide - depth}, rotation_from_vector(draw.in_box({tilt, tilt, aside / kSide}))};
     const Twist sinks{{0, 0, -draw.between(0, 0.7) * depth / kDt}, Vector3d::Zero()};
     pair.link.find({}, {X, X.position, sinks, sinks}, kDt, kMargin, 1.1 * (depth + kDt * sinks.linear.z()));
-    std::array<double, 4> stiffness{};
-    for (const ContactRow& row : pair.link.rows().rows())
-      if (row.normal.z() > 0.999) stiffness[(row.point.x() > 0 ? 1 : 0) + (row.point.y() > 0 ? 2 : 0)] += row.stiffness;
-    const auto [least, most] = std::minmax_element(stiffness.begin(), stiffness.end());
-    ASSERT_GT(*least, 0.4 * *most) << "seed " << seed;
-    ASSERT_GT(*least, 5e9) << "seed " << seed;
+    const auto [least, most] = stiffness_of_quarters(pair.link.rows().rows());
+    ASSERT_GT(least, 0.4 * most) << "seed " << seed;
+    ASSERT_GT(least, 5e9) << "seed " << seed;
   }
 }
 

@@ -30,9 +30,17 @@ class FitsTest(SceneTest):
             with self.subTest(**settings):
                 ring = self.run_scene("ring_on_post.lua", "ring", **settings)
                 self.assertLess(self.overlap_with_post(ring.pose, settings["clearance"]), DEEP)
-                # Per mass; of the spin the part that turns across is at most v^2 of the tube's middle.
-                energy = 0.5 * (ring.twist[:, :3]**2).sum(axis=1) + G * ring.pose[:, 2]
-                self.assertLess(energy.max(), 1.01 * energy[0] + 1e-4)
+                energy = self.energy(ring, settings["clearance"])  # of it, what there is to lose: down to the foot
+                self.assertLess(energy.max() - energy[0], 0.01 * (energy[0] - G * 0.0015))
+
+    def energy(self, ring, clearance):
+        """Kinetic, of a torus that turns, and potential, per mass."""
+        middle, tube = 0.004 + clearance, 0.0015
+        about_axis, across = middle**2 + 0.75 * tube**2, 0.5 * middle**2 + 0.625 * tube**2
+        linear, angular = ring.twist[:, :3], ring.twist[:, 3:]
+        along = (ruler.rotations(ring.pose)[:, :, 2] * angular).sum(axis=1)
+        turning = across * (angular**2).sum(axis=1) + (about_axis - across) * along**2
+        return 0.5 * ((linear**2).sum(axis=1) + turning) + G * ring.pose[:, 2]
 
     def overlap_with_post(self, poses, clearance):
         """The ring's middle circle is to be the tube's radius and the post's away from the axis."""
