@@ -31,10 +31,10 @@ SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const C
     return at;
   };
   if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
-  const SurfaceAt of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
+  SurfaceAt of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
   if (count == 1) return of_segment;
   const Place place = closest_of(pair, placed, surface, c.group, count);
-  const SurfaceAt of_group = gap_at(place);
+  SurfaceAt of_group = gap_at(place);
   if (of_group.distance > of_segment.distance - pair.motion.thresholds.touching) return of_segment;
   const Vector3d p = placed.point(place);
   const SurfaceAt at = surface.at(p);
