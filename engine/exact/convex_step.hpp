@@ -33,10 +33,11 @@
 // overlaps is damped, with the time tau = max(0, kDamped sqrt(m / k) - dt): its force is -k (g + (dt + tau) J u). k: of
 // the stiffest row of the two bodies, m: of the lighter one. Friction. A grip is a quadratic term more, dt c/2 |w|^2,
 // of the velocity w of one body against the other at one point: along two tangents, and of their spin about the normal.
-// It takes energy and keeps momentum. How large c is the caller says. Late rows, of more than kDenseMax bodies, with
-// restitution, or of a pair that began inside of each other. A row that overlaps by more than the pair did before and
-// the approach explains was not there when it should have been. Nothing compressed it, so it has no energy to give: it
-// moves the bodies apart, no faster than kPushOut, and asks for J w >= 0.
+// It takes energy and keeps momentum. How large c is the caller says. Late rows. A row that overlaps by more than the
+// pair did before and the approach explains was not there when it should have been. Nothing compressed it, so it has no
+// energy to give: it moves the bodies apart, no faster than kPushOut, and asks for J w >= 0. Of more than kDenseMax
+// bodies, with restitution, or of a pair that began inside of each other that is so by how little ever; else by 0.2 mm
+// or more.
 //
 // Curves. What a row is told of them (ContactRow::curving) may be wrong: it is a guess of the motion. Where the
 // contacts would do more work than the springs held, by more than 1 % of the kinetic energy, all rows take a smaller
@@ -136,6 +137,8 @@ class ConvexStep {
   [[nodiscard]] Wrench grip_wrench(int grip) const;
   /// Was it late? Then its overlap is none that a later row may have.
   [[nodiscard]] bool is_late(std::size_t row) const { return row_of(row).late; }
+  /// Late by so much that its bodies overlapped before, where no row told of it?
+  [[nodiscard]] bool began_inside(std::size_t row) const { return row_of(row).began_inside; }
   /// Its linearised gap at the end of the step [m].
   [[nodiscard]] double gap_at_end(std::size_t row) const { return row_of(row).end_gap; }
   [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
@@ -185,7 +188,7 @@ class ConvexStep {
     std::array<Vector3d, 2> turn{Vector3d::Zero(), Vector3d::Zero()};  ///< what the Jacobians have gained by that
     double asked = kNothing;  ///< m/s, the rate at least; kNothing: neither hit nor late
     double stretch = 1;       ///< (dt + tau) / dt: by so much the Jacobians are longer and the force is smaller
-    bool late = false;
+    bool late = false, began_inside = false;
   };
   /// A row as it was added. Several may be one row of the problem: where the ends of two edges and the corner between
   /// them touch a face there are three at one place.

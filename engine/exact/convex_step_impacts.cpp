@@ -14,6 +14,9 @@ constexpr double kRigid = 1e5;
 constexpr double kOverlapOfHit = 0.25;
 /// m. By so much a row may overlap more than is known without being late: a step along a curve does that.
 constexpr double kUnknown = 1e-5;
+/// m. A row of any pair that overlaps by so much more is late: no step along a curve does that, so the bodies
+/// overlapped before, where no row told of it.
+constexpr double kImpossible = 2e-4;
 /// Of sqrt(m / k): so long is a step, with tau, at least. What approaches too slowly for a hit then leaves with 0.11 of
 /// its speed at most; with 0.05 where the step alone is that long.
 constexpr double kDamped = 4;
@@ -76,7 +79,9 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold, double t
     const double overlap = rest.curving - row.g;
     if (!is_hit && overlap <= known) continue;
     const double approach = -rate(r, &Body::before);
-    if (watches && overlap > known + std::max(0.0, approach * dt)) {
+    const double sudden = overlap - known - std::max(0.0, approach * dt);
+    rest.began_inside = sudden > kImpossible;
+    if (sudden > (watches ? 0 : kImpossible)) {
       rest.late = late_ = true;
       rest.asked = 0;
       row.g = std::max(row.g, -run.pair.overlap - kPushOut * dt);

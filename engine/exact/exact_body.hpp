@@ -8,7 +8,8 @@
 //   - the axis of a pin or cone. The balls that fill a cone have a radius that grows along the axis.
 // Along a straight line the distance to a plane, a hole or a conical hole is linear or concave, so its least value lies
 // at an end of the line. The side of a pin or cone therefore touches such a face first at its end edges, and these are
-// enough. The axes are needed only against other convex round faces (Feature::against_round_only).
+// enough. The axes are needed only against the sides of other pins and cones (Feature::is_axis): a ball or torus has a
+// feature of its own, that finds every contact with such a side.
 //
 // Sampling and contact reduction. A curve is cut into segments no longer than the spacing. A segment has one sample,
 // its middle; the search moves it to the closest place of the segment (exact_link.hpp). A group of neighbouring
@@ -113,7 +114,7 @@ struct Feature {
   double stiffness = 0;              ///< N/m of one segment
   std::uint32_t group = 1;           ///< up to so many neighbouring segments make one row; at most kGroupMax
   std::uint32_t own_face = kNoFace;  ///< the face that the ball belongs to; a contact must lie on it
-  bool against_round_only = false;   ///< axes of pins and cones
+  bool is_axis = false;              ///< of a pin or cone
   bool closed = false;               ///< a full circle or ellipse
   std::uint32_t begin = 0, end = 0;  ///< samples [begin, end)
   /// Does the curve go on beyond the end of a sample's segment at which t has this sign?

@@ -129,7 +129,7 @@ void add_cone_axis(ExactBody& body, const Cone& cone, const std::array<double, 2
   f.radius_slope = pinned::sin(cone.half_angle);
   f.stiffness *= cosine;  // of the segment's length along the cone's side
   f.own_face = number;
-  f.against_round_only = true;
+  f.is_axis = true;
   if (!samples.empty()) add(body, f, samples);
 }
 
@@ -215,14 +215,14 @@ void add_edge_features(ExactBody& body, const Edge& edge, const ExactEdge& made,
 }
 
 void add_face_features(ExactBody& body, const Face& face, std::uint32_t number) {
-  const auto add_curve = [&](const Curve& curve, const std::array<double, 2>& range, double radius, bool round_only) {
+  const auto add_curve = [&](const Curve& curve, const std::array<double, 2>& range, double radius, bool is_axis) {
     const Segmentation split = segmentation_of(curve, range, body.options.spacing);
     std::vector<Sample> samples;
     for (int i = 0; i < split.segments; ++i) samples.push_back(split.sample_at(split.from + (i + 0.5) * split.width));
     Feature f = feature_of(split, body.options);
     f.radius = radius;
     f.own_face = number;
-    f.against_round_only = round_only;
+    f.is_axis = is_axis;
     if (!samples.empty()) add(body, f, samples);
   };
   std::visit(

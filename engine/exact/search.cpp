@@ -9,6 +9,15 @@
 
 namespace verisim::exact {
 
+namespace {
+
+/// Is it the side of a pin or cone?
+bool meets_axes(const AnalyticSurface& surface) {
+  return surface.is_convex() && (surface.kind() == SurfaceKind::cylinder || surface.kind() == SurfaceKind::cone);
+}
+
+}  // namespace
+
 double Search::run(NodePairs& stack) {
   near_.find(pair_.base.face_tree, stack, [&](std::uint32_t block, std::uint32_t face) { test_block(block, face); });
   near_.find(pair_.base.edge_tree, stack, [&](std::uint32_t block, std::uint32_t edge) { cross_block(block, edge); });
@@ -20,7 +29,7 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   const SampleBlock& block = pair_.mover.blocks[r];
   const Feature& feature = pair_.mover.features[block.feature];
   const AnalyticSurface& surface = *pair_.base.faces[face].surface;
-  if (feature.against_round_only && !surface.is_convex()) return;
+  if (feature.is_axis && !meets_axes(surface)) return;
   if (surface.kind() == SurfaceKind::plane && is_back_facing(block, surface.axis())) return;
   const PlacedFeature& placed = placed_feature(block);
   // Along a straight curve the distance from a plane and its change are linear. All that is left of the curve is its

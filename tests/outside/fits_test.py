@@ -21,10 +21,9 @@ class FitsTest(SceneTest):
                 self.assertLess(np.hypot(pose[:, 0], pose[:, 1]).max() - settings["clearance"], DEEP)
 
     def test_a_ring_falls_along_its_post_and_gains_no_energy(self):
-        """At steps of up to 1 ms. At 2 ms 2 of 10 rock on their inner side until they are thrown."""
         draw = np.random.default_rng(2)
         for i in range(120 if LONG else 30):
-            settings = {"timestep": (5e-4, 1e-3)[i % 2], "clearance": draw.choice([2.5e-7, 2.5e-6, 1e-5]),
+            settings = {"timestep": (5e-4, 1e-3, 2e-3)[i % 3], "clearance": draw.choice([2.5e-7, 2.5e-6, 1e-5]),
                         "vx": draw.uniform(-0.1, 0.1), "vy": draw.uniform(-0.1, 0.1), "vz": draw.uniform(-0.5, -0.05),
                         "spin": draw.uniform(-3, 3)}
             with self.subTest(**settings):

@@ -125,5 +125,44 @@ TEST(Overlap, IsNoSinking) {
   EXPECT_NEAR(simulation.body_pose(kBox).position.z(), 0.025, 1e-3);
 }
 
+/// A pin in the bore of a free tube, its head in the tube's wall, where no face is within a voxel. Without gravity.
+Scene head_in_wall(Inputs& in, double dt) {
+  Scene scene = cube_in_plate(0.1, 0, Quaterniond::Identity(), dt);
+  scene.parameters.duration = 0.4;
+  const auto cylinder = [](double radius, double height) {
+    return scenes::solid(Solid::Kind::cylinder, {radius, height});
+  };
+  const Solid tube = scenes::difference(cylinder(0.05, 0.1), cylinder(0.03, 0.15));
+  const Solid head{.kind = Solid::Kind::placed,
+                   .sizes = {},
+                   .children = {cylinder(in.between(0.04, 0.05), 0.025)},
+                   .placement = {{0, 0, 0.0625}, Quaterniond::Identity()}};
+  const Solid pin{.kind = Solid::Kind::sum,
+                  .sizes = {},
+                  .children = {cylinder(0.02997, 0.1), std::make_shared<Solid>(head)},
+                  .placement = {}};
+  const double voxel = in.between(0.002, 0.01);
+  scene.bodies = {scenes::body_of("tube", tube, voxel), scenes::body_of("pin", pin, voxel)};
+  scene.bodies[0].fixed = in.between(0, 1) < 0.3;
+  for (BodyDescription& body : scene.bodies) body.density = in.between(1000, 8000);
+  scene.bodies[1].X_WB.position.z() = in.between(-0.06, -0.02);
+  scene.bodies[1].twist.linear = {in.between(-0.03, 0.03), in.between(-0.03, 0.03), in.between(0.1, 0.5)};
+  scene.bodies[1].twist.angular = {0, 0, in.between(-1, 1)};
+  return scene;
+}
+
+// What touches elsewhere says nothing of it. Unmended, the head that came out of the wall was thrown: energy x 100.
+TEST(Overlap, BesideAContactIsToldOfWhenItShowsAndThrowsNobody) {
+  for (const std::uint64_t seed : seeds(8)) {
+    Inputs in(seed);
+    Scene scene = head_in_wall(in, in.between(0, 1) < 0.5 ? 1e-3 : 2e-4);
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Simulation simulation(std::move(scene), {});
+    const Found found = run(simulation);
+    EXPECT_LE(found.fastest, 1.2);  // what it had, at most 0.51 m/s, and kPushOut
+    EXPECT_EQ(found.overlaps.size(), 1U);
+  }
+}
+
 }  // namespace
 }  // namespace verisim::overlap_test

@@ -405,7 +405,7 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
     const bool late = solver_->is_late(first_row + i);
-    of.late = of.late || (late && of.calm < kCalm);
+    of.late = of.late || (late && (of.calm < kCalm || solver_->began_inside(first_row + i)));
     if (!late) of.overlap = std::max(of.overlap, -rows[i].gap);
     // A row that pushed and is free after the rebound has no force left, but two opposite ones at two places.
     const Vector3d rebound = solver_->rebound(first_row + i) * rows[i].normal;
@@ -415,7 +415,7 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
     const Vector3d f = force * rows[i].normal;
     of.on_second += {f, (rows[i].point - p_WC).cross(f)};
   }
-  if (of.calm < kCalm) of.calm = of.late ? 0 : of.calm + (of.told ? 1 : kCalm / kTouches);
+  if (of.late || of.calm < kCalm) of.calm = of.late ? 0 : of.calm + (of.told ? 1 : kCalm / kTouches);
   cost.contacts += of.acting;
   bodies_[world.links[l].first].contacts += of.acting;
   bodies_[world.links[l].second].contacts += of.acting;
