@@ -54,6 +54,11 @@ int ConvexStep::add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d
   return static_cast<int>(bodies_.size()) - 1;
 }
 
+void ConvexStep::start_from(int body, const Vector6d& u) {
+  VERISIM_ASSERT(at(body) < bodies_.size());
+  bodies_[at(body)].u = u;
+}
+
 void ConvexStep::add_rows(std::span<const ContactRow> rows, int first, int second, const Pair& pair) {
   VERISIM_ASSERT(is_fraction(pair.restitution));
   VERISIM_ASSERT(pair.overlap >= 0);
@@ -194,7 +199,7 @@ double ConvexStep::cost() const {
   return 0.5 * sum;
 }
 
-/// Starts from the velocity before or from the motion without contact, whichever costs less.
+/// Starts from the velocity before (start_from) or from the motion without contact, whichever costs less.
 void ConvexStep::choose_start(double dt) {
   evaluate_gaps(dt);
   const double cost_of_before = cost();

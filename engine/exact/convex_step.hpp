@@ -84,6 +84,9 @@ class ConvexStep {
   ///        the minimum may begin there
   /// @pre fewer than bodies_max bodies so far; M is symmetric positive definite  @returns the body's number
   int add_body(const Vector3d& p_WC, const Matrix6d& M, const Vector6d& u0, const Vector6d& before);
+  /// The search for the minimum begins at this velocity instead of the one before.
+  /// @pre body is a number from add_body; solve has not been called since
+  void start_from(int body, const Vector6d& u);
 
   /// What is known of two bodies beside their rows.
   struct Pair {

@@ -330,9 +330,11 @@ void ExactResponse::find_again(const World& world, const Neighbours& neighbours,
   }
 }
 
-/// The island's bodies, rows and grips as a problem, solved.
-void ExactResponse::solve_problem(const World& world, std::size_t island, FrameCost& cost) {
+/// The island's bodies, rows and grips as a problem, solved. @param again  with few rows that differ
+void ExactResponse::solve_problem(const World& world, std::size_t island, FrameCost& cost, bool again) {
   const OfBody& head = bodies_[island];
+  for (std::size_t i = head.first_body; again && i != kNone; i = bodies_[i].next)
+    bodies_[i].velocity = solver_->velocity(bodies_[i].in_solver);
   solver_->clear();
   for (std::size_t i = head.first_body; i != kNone; i = bodies_[i].next) {
     OfBody& of = bodies_[i];
@@ -340,6 +342,7 @@ void ExactResponse::solve_problem(const World& world, std::size_t island, FrameC
     Vector6d last;
     last << rigid.v_C, rigid.omega;
     of.in_solver = solver_->add_body(rigid.p_WC, of.step.A, of.step.free, last);
+    if (again) solver_->start_from(of.in_solver, of.velocity);
   }
   const SimulationParameters& p = world.parameters;
   for (std::size_t l = head.first_link; l != kNone; l = links_[l].next)
@@ -353,12 +356,12 @@ void ExactResponse::solve_problem(const World& world, std::size_t island, FrameC
 void ExactResponse::solve_island(const World& world, const Neighbours& neighbours, const PairMethods& methods,
                                  std::size_t island, FrameCost& cost) {
   const OfBody& head = bodies_[island];
-  solve_problem(world, island, cost);
+  solve_problem(world, island, cost, false);
   // First: what slips away without its grip moves like nothing that contacts are to be found for.
-  if (squeezes_light_body(world, island)) solve_problem(world, island, cost);
+  if (squeezes_light_body(world, island)) solve_problem(world, island, cost, false);
   for (int again = 0; again < kAgainMax && mark_otherwise_moved(world, island); ++again) {
     find_again(world, neighbours, methods, island, cost);
-    solve_problem(world, island, cost);
+    solve_problem(world, island, cost, true);
   }
   cost.rows_left_out += solver_->left_out();
   cost.solver_unfinished += solver_->finished() ? 0 : 1;
@@ -405,7 +408,7 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
     const bool late = solver_->is_late(first_row + i);
-    of.late = of.late || (late && (of.calm < kCalm || solver_->began_inside(first_row + i)));
+    of.late = of.late || (late && (of.calm < kCalm || (force > 0 && solver_->began_inside(first_row + i))));
     if (!late) of.overlap = std::max(of.overlap, -rows[i].gap);
     // A row that pushed and is free after the rebound has no force left, but two opposite ones at two places.
     const Vector3d rebound = solver_->rebound(first_row + i) * rows[i].normal;

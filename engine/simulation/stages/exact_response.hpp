@@ -108,7 +108,7 @@ class ExactResponse {
   [[nodiscard]] bool mark_otherwise_moved(const World& world, std::size_t island);
   void find_again(const World& world, const Neighbours& neighbours, const PairMethods& methods, std::size_t island,
                   FrameCost& cost);
-  void solve_problem(const World& world, std::size_t island, FrameCost& cost);
+  void solve_problem(const World& world, std::size_t island, FrameCost& cost, bool again);
   void add_grip(const World& world, std::size_t link);
   [[nodiscard]] Pressing pressing(std::size_t link, std::size_t first_row) const;
   [[nodiscard]] bool squeezes_light_body(const World& world, std::size_t island);
