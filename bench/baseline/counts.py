@@ -18,6 +18,26 @@ SCENARIOS = os.path.join(HERE, "..", "..", "scenarios")
 UPDATE = "cmake --build build --target update_counts"
 
 
+def listed(file):
+    """The runs of the file, each a dict with `run` and `cost`."""
+    advice = f"put the committed file back, then {UPDATE}"
+    try:
+        with open(file) as f:
+            runs = json.load(f)["runs"]
+    except OSError as error:
+        sys.exit(f"error: {file}: cannot be read ({error.strerror}); {advice}")
+    except json.JSONDecodeError as error:
+        sys.exit(f"error: {file}:{error.lineno}: is no JSON ({error.msg}); {advice}")
+    except (KeyError, TypeError):
+        runs = None
+    if not isinstance(runs, list):
+        sys.exit(f"error: {file}: has no list 'runs'; {advice}")
+    for i, run in enumerate(runs):
+        if not isinstance(run, dict) or not isinstance(run.get("run"), str) or not isinstance(run.get("cost"), dict):
+            sys.exit(f"error: {file}: runs[{i}] is not what this program writes (`run`, `cost` …); {advice}")
+    return runs
+
+
 def measured(program, run):
     """Frames, outcome, state hash and the sums of /cost of one run."""
     with tempfile.TemporaryDirectory() as folder:
@@ -54,8 +74,7 @@ def main():
     parser.add_argument("--update", action="store_true")
     parser.add_argument("--file", default=os.path.join(HERE, "counts.json"))
     asked = parser.parse_args()
-    with open(asked.file) as f:
-        wanted = json.load(f)["runs"]
+    wanted = listed(asked.file)
     found = [measured(asked.program, run["run"]) for run in wanted]
     if asked.update:
         with open(asked.file, "w") as f:

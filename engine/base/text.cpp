@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace verisim {
@@ -57,6 +58,11 @@ std::string value_fault(std::string_view text) {
 }
 std::string line_fault(std::string_view text) {
   return fault(text, text.size(), false);
+}
+
+std::size_t line_of_byte(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+  return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
 }
 
 std::string_view begin_of(std::string_view text, std::size_t longest) {

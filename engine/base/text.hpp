@@ -29,6 +29,9 @@ inline constexpr std::size_t kLongestShown = 1000;     ///< bytes
 /// The same for a terminal, which may have lines.
 [[nodiscard]] std::string shown_lines(std::string_view text);
 
+/// The line, from 1, in which the byte of that number, from 1, stands; of one behind the end the last.
+[[nodiscard]] std::size_t line_of_byte(std::string_view text, std::size_t byte);
+
 /// The longest begin of `text` of at most `longest` bytes that cuts no character in two.
 [[nodiscard]] std::string_view begin_of(std::string_view text, std::size_t longest);
 

@@ -10,6 +10,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
 #include "engine/base/user_file.hpp"
+#include "engine/compare/json_input.hpp"
 
 namespace verisim::compare {
 namespace {
@@ -31,11 +32,9 @@ bool has_words_of_no_number(const std::string& text) {
 }
 
 json parsed(const std::string& path, const std::string& text) {
-  json j = json::parse(text, nullptr, false);
-  if (!j.is_discarded()) return j;
-  if (has_words_of_no_number(text))
+  if (has_words_of_no_number(text) && json::parse(text, nullptr, false).is_discarded())
     fail(ErrorKind::input, "{}: has a NaN or an infinity, which are no times; measure it again", path);
-  fail(ErrorKind::input, "{}: is not JSON, or not all of it; {}", path, kHowToWrite);
+  return parse_input(path, text, kHowToWrite);
 }
 
 double time_in(const std::string& path, const std::string& name, const json& entry, const char* key) {
@@ -118,11 +117,18 @@ void compare_counts(const Benchmark& a, const Benchmark& b, Comparison& to) {
   }
 }
 
-void note_context(const BenchmarkFile& a, const BenchmarkFile& b, Comparison& to) {
+/// Returns in what the machines were others, so that times tell nothing of the programs; empty: in nothing.
+std::string note_context(const BenchmarkFile& a, const BenchmarkFile& b, Comparison& to) {
+  static const std::set<std::string> kOfTheMachine = {"cpu", "num_cpus", "governor", "cpu_scaling_enabled"};
+  std::string machine;
   for (const auto& [key, value] : a.context)
-    for (const auto& [other_key, other] : b.context)
-      if (key == other_key && value != other)
-        to.notices.push_back(shown(fmt::format("{} is {} in A, {} in B", key, value, other)));
+    for (const auto& [other_key, other] : b.context) {
+      if (key != other_key || value == other) continue;
+      to.notices.push_back(shown(fmt::format("{} is {} in A, {} in B", key, value, other)));
+      if (kOfTheMachine.count(key) != 0)
+        machine += fmt::format("{}{} {} and {}", machine.empty() ? "" : "; ", key, shown(value, 60), shown(other, 60));
+    }
+  return machine;
 }
 
 }  // namespace
@@ -163,7 +169,7 @@ BenchmarkFile read_benchmarks(const std::string& path) {
 Comparison compare_benchmarks(const std::string& path_a, const std::string& path_b, const Bounds& bounds) {
   const BenchmarkFile a = read_benchmarks(path_a), b = read_benchmarks(path_b);
   Comparison c{.kind = "benchmarks", .a = a.origin, .b = b.origin};
-  note_context(a, b, c);
+  const std::string machine = note_context(a, b, c);
   std::vector<TimeSamples> samples;
   for (const Benchmark& of_a : a.benchmarks) {
     const auto of_b = std::find_if(b.benchmarks.begin(), b.benchmarks.end(),
@@ -180,17 +186,21 @@ Comparison compare_benchmarks(const std::string& path_a, const std::string& path
                        .unit = of_a.unit,
                        .a = of_a.real,
                        .b = scaled(of_b->real, factor),
-                       .is_judged = by_real});
+                       .is_judged = by_real && machine.empty()});
     samples.push_back({.name = of_a.name + (by_real ? " (CPU time)" : ""),
                        .unit = of_a.unit,
                        .a = of_a.cpu,
                        .b = scaled(of_b->cpu, factor),
-                       .is_judged = !by_real});
+                       .is_judged = !by_real && machine.empty()});
   }
   for (const Benchmark& of_b : b.benchmarks)
     if (std::none_of(a.benchmarks.begin(), a.benchmarks.end(), [&](const Benchmark& o) { return o.name == of_b.name; }))
       c.only_b.push_back(of_b.name);
   c.times = judge_times(samples, {.effect = bounds.effect_interleaved, .alpha = kAlphaApart});
+  if (!machine.empty()) {
+    c.notices.push_back("times not comparable: " + machine);
+    for (TimeFigure& figure : c.times) figure.note = "not comparable: " + machine;
+  }
   c.notices.emplace_back(
       "one file was measured after the other: what changed on the machine meanwhile looks like a "
       "change of the program; --programs measures in turns");

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/compare/embedded.hpp"
+#include "engine/compare/json_input.hpp"
 
 namespace verisim::compare {
 namespace {
@@ -26,7 +27,7 @@ const json& entry_of(const std::string& file, const json& j, const char* name) {
 }
 
 void check_source(const std::string& file, const std::string& name, const json& j) {
-  if (!j.contains("source") || !j["source"].is_string() || j["source"].get<std::string>().empty())
+  if (!j.is_object() || !j.contains("source") || !j["source"].is_string() || j["source"].get<std::string>().empty())
     fail(ErrorKind::input, "{}: the bound of '{}' does not say its source", file, name);
 }
 
@@ -39,11 +40,13 @@ double bound_of(const std::string& file, const json& j, const char* name) {
 }  // namespace
 
 Bounds read_bounds(const std::string& name, const std::string& text) {
-  const json j = json::parse(text, nullptr, false);
+  const json j = parse_input(name, text, "bench/baseline/bounds.json shows how it looks");
   if (!j.is_object()) fail(ErrorKind::input, "{}: is not a JSON object", name);
   Bounds bounds;
   for (const auto& [figure, entry] : entry_of(name, j, "figures").items()) {
     check_source(name, figure, entry);
+    if (entry.contains("better") && !entry["better"].is_string())
+      fail(ErrorKind::input, "{}: 'better' of '{}' is no text; write \"less\", or leave it out", name, figure);
     bounds.figures[figure] = {number_of(name, figure, entry, "relative"), number_of(name, figure, entry, "absolute"),
                               entry.value("better", "") == "less", entry["source"].get<std::string>()};
   }

@@ -103,10 +103,10 @@ std::string text_of_peers(const ordered_json& peers) {
         "other\n"
         "alone. Force is that of the last 0.1 s, at rest, where it has a closed form.\n",
         poses, found, table_of_queries(peers), pushed, table_of_insertions(peers), missing);
-  } catch (const ordered_json::exception& wrong) {
+  } catch (const ordered_json::exception&) {  // a figure is missing or of another kind: it is not this version's
     fail(ErrorKind::input,
-         "what verisim-peers said is no list of engines ({}); build it again: ninja -C build verisim-peers",
-         shown(wrong.what(), 120));
+         "what verisim-peers said is no list of engines with the figures that this program reads; build it again: "
+         "ninja -C build verisim-peers");
   }
 }
 

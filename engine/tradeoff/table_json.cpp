@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
+#include "engine/tradeoff/json_member.hpp"
 #include "engine/tradeoff/table.hpp"
 
 namespace verisim::tradeoff {
@@ -19,11 +19,9 @@ ordered_json json_of(const Interval& interval) {
   return {{"median", interval.median}, {"low", interval.low}, {"high", interval.high}, {"most", interval.most}};
 }
 
-Interval interval_from(const ordered_json& json) {
-  const Interval interval{json.at("median"), json.at("low"), json.at("high"), json.at("most")};
-  for (const double value : {interval.median, interval.low, interval.high, interval.most})
-    if (!std::isfinite(value) || value < 0) throw std::invalid_argument("a time that is none");
-  return interval;
+Interval interval_from(const JsonMember& json) {
+  return {json.at("median").number_from_0(), json.at("low").number_from_0(), json.at("high").number_from_0(),
+          json.at("most").number_from_0()};
 }
 
 ordered_json json_of(const std::map<std::string, ordered_json>& parameters) {
@@ -32,14 +30,10 @@ ordered_json json_of(const std::map<std::string, ordered_json>& parameters) {
   return json;
 }
 
-const ordered_json& object(const ordered_json& json) {
-  if (!json.is_object()) throw std::invalid_argument("what has to be an object is none");
-  return json;
-}
-
-std::map<std::string, ordered_json> parameters_from(const ordered_json& json) {
+std::map<std::string, ordered_json> parameters_from(const JsonMember& json) {
   std::map<std::string, ordered_json> parameters;
-  for (const auto& [name, value] : object(json).items()) parameters[name] = value;
+  (void)json.members();
+  for (const auto& [name, value] : json.json().items()) parameters[name] = value;
   return parameters;
 }
 
@@ -76,31 +70,66 @@ ordered_json json_of(const Row& row) {
   return json;
 }
 
-Row row_from(const ordered_json& json) {
+Row row_from(const JsonMember& json) {
   Row row;
   row.parameters = parameters_from(json.at("parameters"));
-  if (json.contains("failed")) {
-    row.failed = json.at("failed").get<std::string>();
+  if (json.has("failed")) {
+    row.failed = json.at("failed").text();
     if (row.failed.empty()) row.failed = "failed";
     return row;
   }
   row.time_us = interval_from(json.at("time_us"));
   row.frame_us = interval_from(json.at("frame_us"));
-  for (const auto& [counter, total] : object(json.at("cost")).items())
-    row.cost.emplace_back(counter, total.get<std::uint64_t>());
-  row.frames = json.at("frames");
-  row.step_s = json.at("step_s");
-  if (!(row.step_s > 0) || !std::isfinite(row.step_s)) throw std::invalid_argument("a step that is none");
-  row.mean_us = json.at("mean_us");
-  row.work_us = json.at("work_us");
+  const JsonMember cost = json.at("cost");
+  (void)cost.members();
+  for (const auto& [counter, total] : cost.json().items()) row.cost.emplace_back(counter, cost.at(counter).count());
+  row.frames = json.at("frames").count();
+  row.step_s = json.at("step_s").number();
+  if (!(row.step_s > 0)) throw JsonFault("a step is not above 0");
+  row.mean_us = json.at("mean_us").number();
+  row.work_us = json.at("work_us").number();
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    const ordered_json& error = json.at("errors").at(kKinds[i].name);
-    if (error.is_null()) continue;
-    row.errors[i] = Spread{error.at("median"), error.at("most")};
-    if (!std::isfinite(row.errors[i]->most) || row.errors[i]->most < 0)
-      throw std::invalid_argument("an error that is none");
+    const JsonMember error = json.at("errors").at(kKinds[i].name);
+    if (!error.is_null()) row.errors[i] = Spread{error.at("median").number_from_0(), error.at("most").number_from_0()};
   }
   return row;
+}
+
+Kind kind_from(const JsonMember& json) {
+  const std::string by = json.text();
+  const auto* const kind =
+      std::find_if(kKinds.begin(), kKinds.end(), [&](const ErrorKindInfo& k) { return by == k.name; });
+  if (kind == kKinds.end()) throw JsonFault("by names no kind of error");
+  return static_cast<Kind>(kind - kKinds.begin());
+}
+
+ordered_json parsed(const std::string& text) {
+  try {
+    return ordered_json::parse(text);
+  } catch (const ordered_json::parse_error& error) {
+    throw JsonFault(fmt::format("line {} is no JSON, or the file ends in it", line_of_byte(text, error.byte)));
+  }
+}
+
+Table table_from(const JsonMember& json) {
+  Table table;
+  if (json.at("format").text() != kFormat) throw JsonFault("format is another");
+  if (json.at("format_version").count() != 1) throw JsonFault("format_version is another");
+  table.version = json.at("version").text();
+  table.commit = json.at("commit").text();
+  table.scenario = json.at("scenario").text();
+  table.scenario_sha256 = json.at("scenario_sha256").text();
+  table.cpu = json.at("machine").at("cpu").text();
+  table.compiler = json.at("machine").at("compiler").text();
+  table.seed = json.at("seed").count();
+  table.repeat = json.at("repeat").count();
+  if (!json.at("duration").is_null()) table.duration = json.at("duration").number();
+  table.fixed = parameters_from(json.at("fixed"));
+  table.truth = json.at("truth").text();
+  table.convergence_json = json.at("convergence").json().dump();
+  table.by = kind_from(json.at("by"));
+  for (const JsonMember& row : json.at("rows").elements()) table.rows.push_back(row_from(row));
+  return table;
 }
 
 /// "_Nm" of "N m"; nothing of a plain number.
@@ -132,6 +161,7 @@ ordered_json json_of(const Table& table) {
                        {"machine", {{"cpu", table.cpu}, {"compiler", table.compiler}}},
                        {"seed", table.seed},
                        {"repeat", table.repeat},
+                       {"coverage", coverage_of(table.repeat)},
                        {"duration", table.duration ? ordered_json(*table.duration) : ordered_json()},
                        {"fixed", json_of(table.fixed)},
                        {"truth", table.truth},
@@ -146,35 +176,15 @@ ordered_json json_of(const Table& table) {
 }
 
 Table table_from(const std::string& name, const std::string& text) {
-  Table table;
   try {
-    const ordered_json json = ordered_json::parse(text);
-    if (json.at("format") != kFormat) throw std::invalid_argument("another format");
-    if (json.at("format_version") != 1) throw std::invalid_argument("another version of the format");
-    table.version = json.at("version");
-    table.commit = json.at("commit");
-    table.scenario = json.at("scenario");
-    table.scenario_sha256 = json.at("scenario_sha256");
-    table.cpu = json.at("machine").at("cpu");
-    table.compiler = json.at("machine").at("compiler");
-    table.seed = json.at("seed");
-    table.repeat = json.at("repeat");
-    if (!json.at("duration").is_null()) table.duration = json.at("duration").get<double>();
-    table.fixed = parameters_from(json.at("fixed"));
-    table.truth = json.at("truth");
-    table.convergence_json = json.at("convergence").dump();
-    const std::string by = json.at("by");
-    const auto* const kind =
-        std::find_if(kKinds.begin(), kKinds.end(), [&](const ErrorKindInfo& k) { return by == k.name; });
-    if (kind == kKinds.end()) throw std::invalid_argument("a front by an error that is none");
-    table.by = static_cast<Kind>(kind - kKinds.begin());
-    for (const ordered_json& row : json.at("rows")) table.rows.push_back(row_from(row));
-  } catch (const std::exception& error) {
-    fail(ErrorKind::input, "{}: is no table of 'verisim tradeoff' ({}); make it with verisim tradeoff -o FOLDER", name,
-         shown(error.what(), 120));
+    const ordered_json json = parsed(text);
+    Table table = table_from(JsonMember(json, ""));
+    find_dominated(table.rows, table.by);
+    return table;
+  } catch (const JsonFault& fault) {
+    fail(ErrorKind::input, "{}: is no table of 'verisim tradeoff': {}; make it with verisim tradeoff -o FOLDER", name,
+         shown(fault.what(), 120));
   }
-  find_dominated(table.rows, table.by);
-  return table;
 }
 
 std::string csv_of(const Table& table) {

@@ -42,6 +42,13 @@ TEST(Text, WhatIsShownIsFitToBeShownAgain) {
   EXPECT_EQ(shown(once), once);
 }
 
+TEST(Text, LinesAreCountedFromOne) {
+  EXPECT_EQ(line_of_byte("a\nb\n", 1), 1U);
+  EXPECT_EQ(line_of_byte("a\nb\n", 3), 2U);
+  EXPECT_EQ(line_of_byte("a\nb", 99), 2U);
+  EXPECT_EQ(line_of_byte("", 0), 1U);
+}
+
 TEST(Text, NoCharacterIsCutInTwo) {
   EXPECT_EQ(begin_of("aä", 2), "a");
   EXPECT_EQ(begin_of("aä", 3), "aä");

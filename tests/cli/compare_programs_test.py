@@ -130,6 +130,15 @@ class Counts(ProgramTest):
         done = self.check(file)
         self.assertEqual((done.returncode, "every count" in done.stdout), (0, True))
 
+    def test_a_broken_file_is_told_with_its_place(self):
+        for text, words in (('{\n"runs": [\n', "counts.json:3: is no JSON"), ("[]", "counts.json: has no list 'runs'"), ('{"runs": 5}', "has no list 'runs'"),
+                            ('{"runs": [{"run": 5}]}', "runs[0] is not what this program writes")):
+            done = self.check(self.write("counts.json", text))
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, r"^error: [^\n]+put the committed file back[^\n]+\n$")
+            self.assertIn(words, done.stderr)
+        self.assertIn("cannot be read", self.check(self.path("gone.json")).stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -252,6 +252,22 @@ class Benchmarks(Compare):
         self.assertIn("cpu is one in A, other in B", report["notes"])
         self.assertEqual((report["a"]["commit"], report["b"]["commit"]), ("aaa", "bbb"))
 
+    def test_times_of_another_machine_are_no_verdict(self):
+        for key in ("cpu", "governor", "num_cpus"):
+            a, b = self.files(benchmark_json({"BM": scattered(1, 20, 1)}, **{key: "one"}),
+                              benchmark_json({"BM": scattered(3, 20, 1)}, **{key: "other"}))
+            report = self.compare(a, b, code=0)
+            self.assertEqual(report["verdict"], "same")
+            self.assertIn(f"times not comparable: {key} one and other", report["notes"])
+            self.assertEqual({t["note"] for t in report["times"]}, {f"not comparable: {key} one and other"})
+        a, b = self.files(benchmark_json({"BM": scattered(1, 20, 1)}, compiler="one"),
+                          benchmark_json({"BM": scattered(3, 20, 1)}, compiler="other"))
+        self.assertEqual(self.compare(a, b, code=1)["verdict"], "worse", "another compiler is what may be compared")
+
+    def test_broken_json_is_told_with_its_line(self):
+        a, b = self.files(benchmark_json({"BM": scattered(1, 9, 1)}), '{\n "benchmarks": [\n  {"name": }\n ]\n}')
+        self.refuse(3, ["b.json:3: is no JSON", "--benchmark_out"], "compare", a, b)
+
     def test_columns_line_up(self):
         a, b = self.files(benchmark_json({"BM_short": scattered(1, 9, 1), "BM_very_long_name": scattered(1e7, 9, 2)}),
                           benchmark_json({"BM_short": scattered(1, 9, 3), "BM_very_long_name": scattered(1e7, 9, 4)}))

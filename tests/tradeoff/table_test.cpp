@@ -148,6 +148,51 @@ TEST(Table, ThatIsDamagedIsRefused) {
   }
 }
 
+// The reader of the message is told the place and what to do, not what a parser thinks.
+TEST(Table, ThatIsDamagedIsToldWithItsPlace) {
+  Table table;
+  table.rows = {row_of(10, 5), row_of(20, 1)};
+  const nlohmann::ordered_json whole = json_of(table);
+  const auto told = [](const std::string& text) {
+    try {
+      (void)table_from("t.json", text);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  const std::string cut = whole.dump(1);
+  EXPECT_EQ(
+      told(cut.substr(0, cut.find("\"commit\"") + 4)),
+      "t.json: is no table of 'verisim tradeoff': line 5 is no JSON, or the file ends in it; make it with verisim "
+      "tradeoff -o FOLDER");
+  EXPECT_NE(told("[1]").find("it is no object"), std::string::npos);
+  nlohmann::ordered_json other = whole;
+  other["rows"][1]["time_us"]["most"] = "fast";
+  EXPECT_NE(told(other.dump()).find("rows[1].time_us.most is no number;"), std::string::npos);
+  other["rows"][1]["time_us"]["most"] = -1;
+  EXPECT_NE(told(other.dump()).find("rows[1].time_us.most is below 0;"), std::string::npos);
+  other = whole;
+  other["rows"][0]["errors"].erase("force");
+  EXPECT_NE(told(other.dump()).find("rows[0].errors.force is not there;"), std::string::npos);
+  for (const auto& [field, value] : whole.items()) {
+    other = whole;
+    other[field] = nlohmann::ordered_json::array({nullptr});
+    EXPECT_EQ(told(other.dump()).find("exception"), std::string::npos) << field;
+    other.erase(field);
+    EXPECT_EQ(told(other.dump()).find("exception"), std::string::npos) << field;
+  }
+}
+
+TEST(Table, SaysItsCoverage) {
+  Table table;
+  table.repeat = 3;
+  EXPECT_EQ(json_of(table).at("coverage"), 0.75);
+  table.repeat = 19;
+  EXPECT_EQ(json_of(table).at("coverage"), 0.95);
+}
+
 TEST(Table, HasAPlotOfWhateverItHolds) {
   Table table;
   EXPECT_NE(plot_of(table).find("<svg"), std::string::npos);
