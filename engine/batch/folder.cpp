@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
@@ -27,7 +28,8 @@ std::string leaf_text(const ordered_json& json) {
 
 /// Of an array's element: its parameter's name, else its number.
 std::string element_name(const ordered_json& element, std::size_t number) {
-  if (element.is_object() && element.contains("parameter")) return element["parameter"].get<std::string>();
+  if (element.is_object() && element.contains("parameter") && element["parameter"].is_string())
+    return element["parameter"].get<std::string>();
   return fmt::format("{}", number);
 }
 
@@ -94,15 +96,30 @@ void clear_half_merged(const std::string& folder) {
   }
 }
 
-/// Does it have what a merge and a summary read of it?
-bool is_manifest(const ordered_json& json) {
-  const auto has = [&](const char* name, auto is) { return json.contains(name) && is(json[name]); };
+/// The member that a merge and a summary read of it and that is not as it should be; empty: none.
+std::string wrong_member(const ordered_json& json) {
   const auto is_count = [](const ordered_json& j) { return j.is_number_unsigned(); };
   const auto is_text = [](const ordered_json& j) { return j.is_string(); };
   const auto is_object = [](const ordered_json& j) { return j.is_object(); };
-  return has("version", is_text) && has("runs", is_count) && has("seed", is_count) && has("design", is_object) &&
-         has("shard", [](const ordered_json& j) { return j.is_null() || j.is_object(); }) &&
-         has("groups", [&](const ordered_json& j) { return j.is_array() && std::all_of(j.begin(), j.end(), is_text); });
+  const auto are_texts = [&](const ordered_json& j) {
+    return j.is_array() && std::all_of(j.begin(), j.end(), is_text);
+  };
+  const auto is_shard = [](const ordered_json& j) { return j.is_null() || j.is_object(); };
+  const std::pair<const char*, std::function<bool(const ordered_json&)>> members[] = {
+      {"version", is_text},  {"runs", is_count},  {"seed", is_count},
+      {"design", is_object}, {"shard", is_shard}, {"groups", are_texts}};
+  for (const auto& [name, is] : members)
+    if (!json.contains(name) || !is(json[name])) return name;
+  return {};
+}
+
+ordered_json parsed(const std::string& file, const std::string& text) {
+  try {
+    return ordered_json::parse(text);
+  } catch (const ordered_json::parse_error& error) {
+    fail(ErrorKind::input, "{}:{}: is no JSON, or the file ends there; move the folder away and run the batch again",
+         file, line_of_byte(text, error.byte));
+  }
 }
 
 }  // namespace
@@ -119,13 +136,16 @@ ordered_json read_any_manifest(const std::string& folder) {
   const std::string file = folder + "/" + kManifest;
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: holds no batch ({} is not there); name a folder of verisim batch", folder, kManifest);
-  ordered_json json = ordered_json::parse(UserFile(file, file).content(), nullptr, false);
+  ordered_json json = parsed(file, UserFile(file, file).content());
   const bool is_ours = json.is_object() && json.contains("format") && json["format"] == "verisim-batch";
   if (is_ours && json.value("format_version", ordered_json()) != kManifestFormat)
     fail(ErrorKind::input, "{}: is of format {}, this program reads {}; go on with the version that wrote it", file,
          leaf_text(json.value("format_version", ordered_json())), kManifestFormat);
-  if (!is_ours || !is_manifest(json))
+  if (!is_ours)
     fail(ErrorKind::input, "{}: does not say what batch this is; move the folder away and run the batch again", file);
+  if (const std::string member = wrong_member(json); !member.empty())
+    fail(ErrorKind::input, "{}: '{}' is missing or not what it should be; move the folder away and run the batch again",
+         file, member);
   return json;
 }
 
@@ -149,7 +169,7 @@ Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move
   const bool merges_anew = is_half_merged(manifest) && (!identity_of(file) || is_half_merged(read_any_manifest(path_)));
   if (merges_anew) clear_half_merged(path_);
   if (identity_of(file) && !merges_anew) {
-    const std::string found = first_difference(read_manifest(path_), manifest, {"machine", "scenario"});
+    const std::string found = first_difference(read_manifest(path_), manifest, kOfTheMaking);
     if (found.empty()) return;
     if (found.starts_with("version") || found.starts_with("commit") || found.starts_with("format"))
       fail(ErrorKind::input,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "engine/record/file_replace.hpp"
 
@@ -11,7 +12,7 @@ namespace verisim::batch {
 
 class Folder {
  public:
-  /// Makes the folder or goes on in it. `manifest` is what batch.json holds or has to hold: members below "machine" may
+  /// Makes the folder or goes on in it. `manifest` is what batch.json holds or has to hold: members of kOfTheMaking may
   /// differ. Error(input): it holds another design, which is named; Error(io): it holds other things, cannot be made,
   /// or another batch writes in it. A
   /// manifest that is half merged begins anew where another such one is.
@@ -43,11 +44,16 @@ inline constexpr int kManifestFormat = 1;  ///< format_version of batch.json
 /// Likewise, and Error(input) if what makes the folder is a merge that has not ended.
 [[nodiscard]] nlohmann::ordered_json read_manifest(const std::string& folder);
 
+/// Members of batch.json: what the times of its runs hang on (conditions.hpp); how many shards were merged.
+inline constexpr const char* kComputed = "computed";
+inline constexpr const char* kShardsMerged = "shards_merged";
+/// What may differ between two manifests of one batch: where and how it was computed.
+inline const std::vector<std::string> kOfTheMaking = {"machine", "scenario", kComputed, kShardsMerged};
 /// Member of batch.json while shards are merged into its folder.
 inline constexpr const char* kMerging = "merging";
 [[nodiscard]] bool is_half_merged(const nlohmann::ordered_json& manifest);
 
-/// The first difference of two manifests but for "machine": "design/vary/clearance/values is [1,2] there and [1,3]
+/// The first difference of two manifests: "design/vary/clearance/values is [1,2] there and [1,3]
 /// here"; empty: none. Members of `ignored` count for nothing.
 [[nodiscard]] std::string first_difference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& here,
                                            const std::vector<std::string>& ignored);

@@ -62,6 +62,10 @@ std::string list_of(const std::vector<std::string>& columns) {
   return text;
 }
 
+void add_measure_column(Database& database, const std::string& table, const std::string& column) {
+  database.run(fmt::format("ALTER TABLE {} ADD COLUMN {} REAL", sql_name(table), sql_name(column)));
+}
+
 const std::vector<IndexColumn>& fixed_columns() {
   static const std::vector<IndexColumn> columns = {
       {"run", "INTEGER", "1", "number of the run in the order of the design, from 0"},
@@ -153,15 +157,21 @@ void Index::check_tables() {
     refuse_damaged(path, "runs without their times");
 }
 
-void Index::make_tables(const std::string& version) {
-  std::string run = "run INTEGER PRIMARY KEY, seed", timing = "run INTEGER PRIMARY KEY";
+/// Without the measures.
+void Index::make_run_table(const std::string& name) {
+  std::string run = "run INTEGER PRIMARY KEY, seed";
   for (const IndexColumn& c : layout_.parameters) run += fmt::format(", {} {}", sql_name(c.name), c.type);
   run += ", status TEXT, error TEXT, outcome TEXT";
   for (const IndexColumn& c : layout_.figures)
     if (!is_in_head(c.name)) run += fmt::format(", {} {}", sql_name(c.name), c.type);
+  database_->run(fmt::format("CREATE TABLE {} ({})", sql_name(name), run));
+}
+
+void Index::make_tables(const std::string& version) {
+  std::string timing = "run INTEGER PRIMARY KEY";
   for (const IndexColumn& c : layout_.timing) timing += fmt::format(", {} {}", sql_name(c.name), c.type);
   database_->transaction([&] {
-    database_->run("CREATE TABLE run (" + run + ")");
+    make_run_table("run");
     database_->run("CREATE TABLE timing (" + timing + ")");
     database_->run("CREATE TABLE unit (\"column\" TEXT PRIMARY KEY, unit TEXT, meaning TEXT)");
     database_->run("CREATE TABLE input (name TEXT PRIMARY KEY, sha256 TEXT)");
@@ -223,7 +233,7 @@ std::string Index::column_of(const Measure& measure) {
   if (std::find(all.begin(), all.end(), column) == all.end()) {
     if (all.size() >= kColumnsMax)
       fail(ErrorKind::input, "{}: more than {} columns; measure less", database_->path(), kColumnsMax);
-    database_->run(fmt::format("ALTER TABLE run ADD COLUMN {} REAL", sql_name(column)));
+    add_measure_column(*database_, "run", column);
   }
   Statement unit = database_->prepare("SELECT unit FROM unit WHERE \"column\" = ?");
   unit.bind(1, column);
@@ -325,7 +335,23 @@ std::string Index::table_csv(const std::string& table, const std::vector<std::st
   return text;
 }
 
+/// Measures got their columns as runs brought them, in an order that hangs on jobs and shards.
+void Index::put_in_order() {
+  const std::vector<std::string> measures = measure_columns(), there = database_->columns("run");
+  if (std::equal(measures.begin(), measures.end(), there.end() - static_cast<std::ptrdiff_t>(measures.size()))) return;
+  const std::string all = list_of(there);
+  database_->transaction([&] {
+    make_run_table("run in order");
+    for (const std::string& name : measures) add_measure_column(*database_, "run in order", name);
+    database_->run(
+        fmt::format("INSERT INTO {0} ({1}) SELECT {1} FROM run ORDER BY run", sql_name("run in order"), all));
+    database_->run("DROP TABLE run");
+    database_->run(fmt::format("ALTER TABLE {} RENAME TO {}", sql_name("run in order"), sql_name("run")));
+  });
+}
+
 void Index::write_csv(const std::string& folder) {
+  put_in_order();
   std::vector<std::string> columns = head_columns(layout_);
   for (const auto& more : {measure_columns(), figure_columns(layout_)})
     columns.insert(columns.end(), more.begin(), more.end());
@@ -352,6 +378,26 @@ std::uint64_t Index::count_unanswered(const std::string& status) {
   statement.bind(1, status);
   statement.step();
   return static_cast<std::uint64_t>(std::get<std::int64_t>(statement.column(0)));
+}
+
+void Index::forget_unanswered() {
+  database_->transaction([&] {
+    database_->run("DELETE FROM run WHERE run IN (SELECT run FROM timing WHERE answered = 0)");
+    database_->run("DELETE FROM timing WHERE answered = 0");
+  });
+}
+
+void Index::count_timing_by(const std::vector<std::string>& columns,
+                            const std::function<void(const std::vector<Cell>&, std::uint64_t)>& each) {
+  const std::string list = list_of(columns);
+  Statement statement =
+      database_->prepare(fmt::format("SELECT {0}, count(*) FROM timing GROUP BY {0} ORDER BY min(run)", list));
+  while (statement.step()) {
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < columns.size(); ++i) cells.push_back(statement.column(static_cast<int>(i)));
+    const Cell count = statement.column(static_cast<int>(columns.size()));
+    each(cells, static_cast<std::uint64_t>(std::get<std::int64_t>(count)));
+  }
 }
 
 std::uint64_t Index::count_without_run_file(bool of_done) {

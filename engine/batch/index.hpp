@@ -64,11 +64,18 @@ class Index {
 
   /// Rows of `run` in the order of runs, these columns of each.
   void read(const std::vector<std::string>& columns, const std::function<void(const std::vector<Cell>&)>& row);
-  /// index.csv and timing.csv, whole or not at all; the index is then ready to be read without a log. Error(io).
+  /// index.csv and timing.csv, whole or not at all; the index is then ready to be read without a log, and its columns
+  /// stand in one order, whichever run brought them. Error(io).
   void write_csv(const std::string& folder);
   /// Number of runs by status, and of those without an answer: all, or of one status.
   [[nodiscard]] std::uint64_t count(const std::string& status);
   [[nodiscard]] std::uint64_t count_unanswered(const std::string& status = {});
+  /// Takes the rows of runs without an answer away, so that they are done again.
+  void forget_unanswered();
+  /// Calls `each` for every set of values that these columns of `timing` have, with the number of its runs, the set of
+  /// the first run first.
+  void count_timing_by(const std::vector<std::string>& columns,
+                       const std::function<void(const std::vector<Cell>&, std::uint64_t)>& each);
   /// Of runs that diverged, and if asked of those that are done: how many have no run file.
   [[nodiscard]] std::uint64_t count_without_run_file(bool of_done);
 
@@ -77,6 +84,8 @@ class Index {
   void check_version(const std::string& version);
   void check_tables();
   void make_tables(const std::string& version);
+  void make_run_table(const std::string& name);
+  void put_in_order();
   std::string column_of(const Measure& measure);
   void add_inputs(const Answer& answer);
   std::string table_csv(const std::string& table, const std::vector<std::string>& columns);

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/user_file.hpp"
+#include "engine/batch/conditions.hpp"
 #include "engine/batch/design_text.hpp"
 #include "engine/batch/folder.hpp"
 #include "engine/batch/index.hpp"
@@ -54,13 +55,17 @@ void copy_run_files(const std::string& from, const std::string& to, const std::v
 
 void merge(const std::string& out, const std::vector<std::string>& shards, const std::string& version) {
   ordered_json manifest = read_manifest(shards.front());
+  std::vector<std::string> ignored = kOfTheMaking;
+  ignored.emplace_back("shard");
   for (const std::string& shard : shards) {
-    const std::string found = first_difference(manifest, read_manifest(shard), {"machine", "scenario", "shard"});
+    const std::string found = first_difference(manifest, read_manifest(shard), ignored);
     if (!found.empty())
       fail(ErrorKind::input, "{} and {} are no shards of one batch: {}", shards.front(), shard, found);
   }
   check_runs(shards, manifest.at("runs").get<std::uint64_t>(), version);
   manifest["shard"] = nullptr;
+  manifest.erase(kComputed);
+  manifest[kShardsMerged] = shards.size();
   if (identity_of(out + "/batch.json") && !is_half_merged(read_any_manifest(out)))
     fail(ErrorKind::input, "{}: holds a batch already; name a new folder to merge into", out);
   ordered_json unfinished = manifest;
@@ -72,6 +77,7 @@ void merge(const std::string& out, const std::vector<std::string>& shards, const
     copy_run_files(shard, out, Index::open(index_of(shard), version).runs());
   }
   index.write_csv(out);
+  manifest[kComputed] = conditions_json(index);
   folder.write_manifest(manifest);
 }
 

@@ -3,20 +3,20 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
 #include "engine/base/text.hpp"
 #include "engine/base/user_file.hpp"
+#include "engine/batch/conditions.hpp"
 #include "engine/batch/design.hpp"
 #include "engine/batch/folder.hpp"
 #include "engine/batch/index.hpp"
-#include "engine/batch/merge.hpp"
 #include "engine/batch/summary.hpp"
 #include "engine/batch/workers.hpp"
+#include "engine/cli/batch_merge.hpp"
 #include "engine/cli/batch_output.hpp"
+#include "engine/cli/batch_words.hpp"
 #include "engine/cli/batch_worker.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
@@ -47,12 +47,8 @@ struct BatchOptions {
   std::uint64_t memory_limit_mb = 0;
   std::uint64_t seed = 1, repeat = 1;
   unsigned jobs = 0, threads = 1;
-  bool measure = false, no_cache = false, json = false, quiet = false;
+  bool measure = false, no_cache = false, retry_failed = false, json = false, quiet = false;
 };
-
-std::string program_version() {
-  return std::string(VERISIM_VERSION) + " (commit " + commit() + ")";
-}
 
 BatchRunOptions::Keep keep_of(const std::string& word) {
   if (word == "all") return BatchRunOptions::Keep::all;
@@ -86,7 +82,10 @@ class Batch {
   [[nodiscard]] batch::RowHead head_of(const batch::Point& point, const Answer& answer) const;
   [[nodiscard]] std::string name_of(const batch::Point& point) const;
   void add_row(const batch::Point& point, const Answer& answer);
-  void say_words(const std::string& words);
+  void say(const std::vector<std::string>& lines);
+  void find_conditions(std::uint64_t wanted);
+  void forget_failed();
+  void close_index();
   void say_progress(std::uint64_t done, std::uint64_t all);
 
   const BatchOptions& o_;
@@ -100,7 +99,8 @@ class Batch {
   std::unique_ptr<batch::Folder> folder_;
   std::unique_ptr<batch::Index> index_;
   std::uint64_t failed_now_ = 0;
-  std::set<std::string> said_;  ///< lines, by workers that came to their end
+  batch::Conditions conditions_;  ///< of this call
+  RunWords words_;
   StopWatch watch_;
   double wall_s_ = 0;
   std::unique_ptr<ProgressLine> line_;
@@ -245,6 +245,7 @@ Answer Batch::answer_to(const batch::WorkerEnd& end) const {
   answer.timing["system_s"] = end.system_s;
   answer.timing["memory_bytes"] = batch::cell_of(end.memory_bytes);
   answer.timing["answered"] = std::int64_t{answer.answered ? 1 : 0};
+  batch::add_conditions(answer, conditions_);
   return answer;
 }
 
@@ -270,19 +271,10 @@ void Batch::add_row(const batch::Point& point, const Answer& answer) {
   }
 }
 
-/// What workers said that came to their end: each line once.
-void Batch::say_words(const std::string& words) {
-  constexpr std::size_t kLinesMax = 20;
-  if (o_.quiet) return;
-  std::istringstream lines(words);
-  for (std::string line; std::getline(lines, line);) {
-    if (said_.size() > kLinesMax || !said_.insert(line).second) continue;
-    line_->say("");
-    const bool last = said_.size() > kLinesMax;
-    std::fprintf(stderr, "%s\n",
-                 last ? "what runs say further is not shown; the column warning of index.csv has their first"
-                      : shown(line).c_str());
-  }
+void Batch::say(const std::vector<std::string>& lines) {
+  if (o_.quiet || lines.empty()) return;
+  line_->say("");
+  for (const std::string& line : lines) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 void Batch::take(const batch::WorkerEnd& end) {
@@ -295,7 +287,7 @@ void Batch::take(const batch::WorkerEnd& end) {
   const std::string file = batch::Folder::run_file(end.run);
   answer.figures["run_file"] = identity_of(folder_->file(file)) ? file : "";
   add_row(point, answer);
-  if (end.exit_code == 0) say_words(end.last_words);
+  if (end.exit_code == 0) say(words_.take(end.run, name_of(point), end.last_words));
   if (done) return;
   ++failed_now_;
   if (o_.quiet) return;
@@ -315,7 +307,35 @@ void Batch::say_progress(std::uint64_t done, std::uint64_t all) {
   line_->say(fmt::format("  {} of {} runs, {} not done, {} left", done, all, failed_now_, time_text(left)));
 }
 
+/// What the times of this call's runs hang on. @param wanted how many they are
+void Batch::find_conditions(std::uint64_t wanted) {
+  conditions_ = {.jobs = static_cast<unsigned>(std::min<std::uint64_t>(jobs_, std::max<std::uint64_t>(wanted, 1))),
+                 .threads = o_.threads,
+                 .cores = batch::cores(),
+                 .recorded = run_options_.measure || run_options_.keep != BatchRunOptions::Keep::summary,
+                 .simd = o_.simd.empty() ? simd_targets().front() : o_.simd,
+                 .cpu = cpu_model()};
+}
+
+/// The CSVs first: while they are there the batch counts as ended.
+void Batch::forget_failed() {
+  if (index_->count_unanswered() == 0) return;
+  std::error_code error;
+  for (const char* name : {"index.csv", "timing.csv"})
+    if (fs::remove(folder_->file(name), error); error) refuse_write(folder_->file(name), error.message());
+  index_->forget_unanswered();
+}
+
+/// The CSVs, and what the times hang on into batch.json.
+void Batch::close_index() {
+  index_->write_csv(folder_->path());
+  ordered_json manifest = batch::read_manifest(folder_->path());
+  manifest[batch::kComputed] = batch::conditions_json(*index_);
+  folder_->write_manifest(manifest);
+}
+
 void Batch::compute() {
+  if (o_.retry_failed) forget_failed();
   say_what_was_not_kept();
   const InterruptScope until_the_index_is_whole;
   line_ = std::make_unique<ProgressLine>(!o_.quiet);
@@ -323,6 +343,7 @@ void Batch::compute() {
   std::size_t known = 0;
   std::uint64_t next = design_.shard.index - 1, done = 0;
   const std::uint64_t all = design_.runs(), wanted = design_.runs_of_shard() - there.size();
+  find_conditions(wanted);
   const auto skip_known = [&] {
     while (known < there.size() && next == there[known]) {
       ++known;
@@ -346,7 +367,8 @@ void Batch::compute() {
   if (was_interrupted()) fail(ErrorKind::interrupted, "{}: interrupted; the same command goes on", folder_->path());
   std::error_code ignored;
   fs::remove(folder_->file("runs"), ignored);  // if nothing was kept in it
-  index_->write_csv(folder_->path());
+  close_index();
+  say(words_.rest());
   wall_s_ = watch_.seconds();
 }
 
@@ -372,27 +394,6 @@ void Batch::report() {
   json["wall_s"] = wall_s_;
   json["jobs"] = jobs_;
   std::printf("%s\n", json_text(json).c_str());
-}
-
-struct MergeOptions {
-  std::string out;
-  std::vector<std::string> shards;
-  bool json = false, quiet = false;
-};
-
-int run_merge(const MergeOptions& o) {
-  const StopWatch watch;
-  batch::merge(o.out, o.shards, program_version());
-  batch::Index index = batch::Index::open(batch::index_of(o.out), program_version());
-  const ordered_json manifest = batch::read_manifest(o.out);
-  if (!o.quiet || o.json) {
-    const batch::Summary summary = batch::summarize(index, manifest.at("groups"), manifest.at("seed"));
-    ordered_json json = json_of(index, summary, o.out);
-    json["wall_s"] = watch.seconds();
-    json["jobs"] = 1;
-    std::printf("%s", o.json ? (json_text(json) + "\n").c_str() : table_of(index, summary, o.out).c_str());
-  }
-  return exit_code_of(index, o.out);
 }
 
 void add_design_options(CLI::App& command, BatchOptions& o) {
@@ -437,6 +438,10 @@ void add_work_options(CLI::App& command, BatchOptions& o) {
       ->check(CLI::Range(1, 1 << 30));
   command.add_option("--keep", o.keep, "Which run files stay: summary (none), failed, all")
       ->check(CLI::IsMember({"summary", "failed", "all"}));
+  command.add_flag(
+      "--retry-failed", o.retry_failed,
+      "Does again what has no answer in the folder: runs that were killed, crashed, or had too little time or "
+      "memory");
   command.add_flag("--measure", o.measure, "The true overlap of each run, too (as replay --measure)");
   command.add_option("--threads", o.threads, "Threads of each run (same bits for any number)")
       ->check(CLI::Range(1, 256));
@@ -458,13 +463,8 @@ void add_batch(CLI::App& app, int& exit_code) {
       "Example: verisim batch scenarios/peg_in_hole.lua --vary clearance=1mm,5mm --repeat 5 --duration 5 "
       "-o runs/pins");
 
-  auto* merge = command->add_subcommand("merge", "Joins the folders of shards");
   auto m = std::make_shared<MergeOptions>();
-  merge->add_option("OUT", m->out, "Folder to write: new, or empty")->required();
-  merge->add_option("SHARD", m->shards, "Folders of the shards")->required();
-  merge->add_flag("--json", m->json, "One JSON object on stdout");
-  merge->add_flag("--quiet", m->quiet, "No summary");
-  merge->footer("Example: verisim batch merge runs/all runs/shard1 runs/shard2");
+  auto* merge = add_merge(*command, *m);
   command->callback([=, &exit_code] {
     if (merge->parsed()) {
       exit_code = run_merge(*m);

@@ -2,10 +2,15 @@
 
 #include "engine/base/text.hpp"
 #include "engine/cli/streams.hpp"
+#include "engine/session/origin.hpp"
 
 namespace verisim::cli {
 
 using nlohmann::ordered_json;
+
+std::string program_version() {
+  return std::string(VERISIM_VERSION) + " (commit " + commit() + ")";
+}
 
 ordered_json json_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
   ordered_json json = {{"folder", folder}, {"runs", index.runs().size()}};
@@ -25,9 +30,9 @@ std::string table_of(batch::Index& index, const batch::Summary& summary, const s
 int exit_code_of(batch::Index& index, const std::string& folder) {
   const std::uint64_t undone = index.count_unanswered();
   if (undone == 0) return 0;
-  std::string advice;
-  if (index.count_unanswered("timeout") > 0) advice += "; more time is given with --time-limit, in another folder";
-  if (index.count_unanswered("memory") > 0) advice += "; more memory is given with --memory-limit, in another folder";
+  std::string advice = "; verisim batch with the same design and --retry-failed does them again";
+  if (index.count_unanswered("timeout") > 0) advice += ", --time-limit gives more time";
+  if (index.count_unanswered("memory") > 0) advice += ", --memory-limit gives more memory";
   print_error(fmt::format("{}: {} of {} runs could not be done; the column error of index.csv says why{}", folder,
                           undone, index.runs().size(), advice)
                   .c_str());

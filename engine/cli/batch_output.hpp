@@ -9,6 +9,9 @@
 
 namespace verisim::cli {
 
+/// As an index has it: figures of two versions need not agree.
+[[nodiscard]] std::string program_version();
+
 /// Counts and groups of a folder's index.
 [[nodiscard]] nlohmann::ordered_json json_of(batch::Index& index, const batch::Summary& summary,
                                              const std::string& folder);

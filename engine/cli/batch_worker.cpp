@@ -8,6 +8,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
+#include "engine/batch/conditions.hpp"
 #include "engine/batch/folder.hpp"
 #include "engine/cli/measure.hpp"
 #include "engine/cli/memory_wanted.hpp"
@@ -82,6 +83,7 @@ void add_process_columns(batch::Layout& layout) {
                                {"memory_bytes", "INTEGER", "B", "the most memory that the process had resident"},
                                {"answered", "INTEGER", "1", "0: what ended the run would not have to end it again"}})
     layout.timing.push_back(c);
+  for (const IndexColumn& c : batch::condition_columns()) layout.timing.push_back(c);
 }
 
 bool is_taken(const std::vector<std::string>& names, const std::string& name) {
@@ -164,6 +166,13 @@ Answer out_of_memory() {
   return answer;
 }
 
+/// What the run found of its prepared parts: the worker's own look-ups, for its store came from the batch unused.
+std::string state_of(const PreparedStore* store) {
+  if (store == nullptr) return "off";
+  if (store->missed() == 0) return store->found() == 0 ? "unused" : "warm";
+  return store->found() == 0 ? "cold" : "partly";
+}
+
 /// How many warnings the run gave, and the first: those of the scene, then those of its frames.
 void add_warnings(Answer& answer, const std::vector<std::string>& of_scene, const LoopResult& of_frames) {
   const std::uint64_t count = of_scene.size() + of_frames.warning_count;
@@ -171,9 +180,9 @@ void add_warnings(Answer& answer, const std::vector<std::string>& of_scene, cons
   if (count > 0) answer.figures["warning"] = shown(of_scene.empty() ? of_frames.first_warning : of_scene.front());
 }
 
-/// Parameters as the run used them: precision = "auto" chooses some.
+/// Parameters as the run used them: precision = "auto" chooses some, and some are overruled.
 void add_parameters(Answer& answer, const Session& session) {
-  const auto parameters = nlohmann::ordered_json::parse(session.scenario->parameters_json());
+  const auto parameters = nlohmann::ordered_json::parse(session.scenario->parameters_in_effect_json());
   for (const auto& [name, value] : parameters.items()) answer.parameters[name] = batch::cell_of(value);
 }
 
@@ -252,6 +261,7 @@ Answer answer_of_run(const BatchRunOptions& options, const ScenarioOptions& scen
   } catch (const std::length_error&) {  // more than any memory could hold
     answer = out_of_memory();
   }
+  answer.timing["cache"] = state_of(options.store.get());
   // Of a run that was refused, too: what it read may have been changed since the batch began.
   if (const Inputs* read = session.inputs ? session.inputs.get() : inputs.get())
     for (const InputFile& input : read->files()) answer.inputs[input.name] = input.sha256;

@@ -53,18 +53,18 @@ reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::Run
           std::move(run.loop.block_overruns), std::move(run.loop.empty_block_overruns)};
 }
 
-ordered_json json_of(const reproduce::Figure& figure) {
+ordered_json json_of_figure(const reproduce::Figure& figure) {
   if (const auto* words = std::get_if<std::string>(&figure)) return *words;
   return std::get<double>(figure);
 }
 
-ordered_json json_of(const reproduce::Row& row) {
+ordered_json json_of_row(const reproduce::Row& row) {
   const std::optional<double> q = ratio(row);
   ordered_json j = {{"id", row.id},
                     {"what", row.what},
                     {"unit", row.unit},
-                    {"published", json_of(row.published)},
-                    {"here", json_of(row.here)},
+                    {"published", json_of_figure(row.published)},
+                    {"here", json_of_figure(row.here)},
                     {"ratio", q ? ordered_json(*q) : ordered_json()},
                     {"why", row.why},
                     {"runs", row.runs}};
@@ -76,7 +76,7 @@ ordered_json json_of(const reproduce::Row& row) {
 std::string json_of_rows(const std::vector<reproduce::Row>& rows) {
   ordered_json j = {{"rows", ordered_json::array()}, {"runs", ordered_json::array()}};
   for (const reproduce::Row& row : rows) {
-    j["rows"].push_back(json_of(row));
+    j["rows"].push_back(json_of_row(row));
     for (const std::string& file : row.runs)
       if (std::find(j["runs"].begin(), j["runs"].end(), file) == j["runs"].end()) j["runs"].push_back(file);
   }

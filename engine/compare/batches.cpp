@@ -6,13 +6,16 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "engine/base/error.hpp"
 #include "engine/base/run_figures.hpp"
 #include "engine/base/text.hpp"
 #include "engine/base/user_file.hpp"
+#include "engine/compare/conditions.hpp"
 #include "engine/compare/figure_kinds.hpp"
 #include "engine/compare/index_table.hpp"
+#include "engine/compare/json_input.hpp"
 
 namespace verisim::compare {
 namespace {
@@ -33,7 +36,7 @@ BatchFolder open_folder(const std::string& path) {
   const std::string file = path + "/batch.json";
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: has no batch.json; name a folder that `verisim batch` wrote", path);
-  const json j = json::parse(UserFile(file, file).content(), nullptr, false);
+  const json j = parse_input(file, UserFile(file, file).content(), "make the batch again");
   if (!j.is_object() || (j.contains("format") && j["format"] != "verisim-batch"))
     fail(ErrorKind::input, "{}: is not what `verisim batch` writes", file);
   if (j.contains("format_version") && j["format_version"] != kBatchFormat)
@@ -75,14 +78,38 @@ std::string run_of(const IndexTable& index, std::size_t row) {
   return "run " + index.cell(row, *index.find("run"));
 }
 
+/// Whether an option overruled the parameter (--duration, --seed): runs that were done have no value of it.
+bool is_overruled(const IndexTable& index, const char* parameter) {
+  const auto column = index.find(parameter), status = index.find("status");
+  if (!column || !status) return false;
+  bool any = false;
+  for (std::size_t row = 0; row < index.rows(); ++row) {
+    if (index.cell(row, *status) != "done") continue;
+    if (!index.cell(row, *column).empty()) return false;
+    any = true;
+  }
+  return any;
+}
+
 std::vector<Pair> pairs_of(const IndexTable& a, const IndexTable& b, Comparison& to) {
-  std::set<std::string> common;
+  std::set<std::string> common, overruled;
   const std::set<std::string> of_a = parameters_of(a), of_b = parameters_of(b);
   std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::inserter(common, common.end()));
+  for (const auto& [name, index, letter] : {std::tuple("duration", &a, 'A'),
+                                            {"duration", &b, 'B'},
+                                            {"parameter.seed", &a, 'A'},
+                                            {"parameter.seed", &b, 'B'}})
+    if (common.count(name) != 0 && is_overruled(*index, name)) {
+      common.erase(name);
+      overruled.insert(name);
+      to.notices.push_back(fmt::format("parameter '{}' has no effect in {}: an option says otherwise", name, letter));
+    }
   for (const std::string& name : of_a)
-    if (common.count(name) == 0) to.notices.push_back("parameter '" + shown(name, 60) + "' is only in A");
+    if (common.count(name) + overruled.count(name) == 0)
+      to.notices.push_back("parameter '" + shown(name, 60) + "' is only in A");
   for (const std::string& name : of_b)
-    if (common.count(name) == 0) to.notices.push_back("parameter '" + shown(name, 60) + "' is only in B");
+    if (common.count(name) + overruled.count(name) == 0)
+      to.notices.push_back("parameter '" + shown(name, 60) + "' is only in B");
   std::map<std::string, std::vector<std::size_t>> rows_of_b;
   for (std::size_t row = b.rows(); row-- > 0;) rows_of_b[key_of(b, row, common)].push_back(row);
   std::vector<Pair> pairs;
@@ -241,6 +268,38 @@ std::optional<double> time_at(const IndexTable& table, std::size_t row, std::siz
   return time;
 }
 
+/// The rows of timing.csv of pairs that have one in both.
+std::vector<TimedPair> timed(const BatchFolder& a, const BatchFolder& b, const std::vector<Pair>& pairs,
+                             const IndexTable& times_a, const IndexTable& times_b) {
+  const auto rows_a = rows_of_runs(times_a), rows_b = rows_of_runs(times_b);
+  std::vector<TimedPair> both;
+  for (const Pair& pair : pairs) {
+    const auto row_a = rows_a.find(a.index.cell(pair.row_a, *a.index.find("run")));
+    const auto row_b = rows_b.find(b.index.cell(pair.row_b, *b.index.find("run")));
+    if (row_a != rows_a.end() && row_b != rows_b.end()) both.push_back({row_a->second, row_b->second});
+  }
+  return both;
+}
+
+std::vector<TimeSamples> samples_of(const IndexTable& a, const IndexTable& b, const std::vector<TimedPair>& pairs,
+                                    bool is_judged) {
+  std::vector<TimeSamples> samples;
+  for (const auto& [name, unit] : {std::pair("process_s", "s"), std::pair("load_s", "s"), std::pair("wall_s", "s"),
+                                   std::pair("frame_ns.p50", "ns"), std::pair("collision_frame_ns.p50", "ns")}) {
+    const auto of_a = a.find(name), of_b = b.find(name);
+    if (!of_a || !of_b) continue;
+    TimeSamples s{.name = name, .unit = unit, .is_paired = true, .is_judged = is_judged};
+    for (const TimedPair& pair : pairs) {
+      const auto x = time_at(a, pair.row_a, *of_a), y = time_at(b, pair.row_b, *of_b);
+      if (!x || !y) continue;
+      s.a.push_back(*x);
+      s.b.push_back(*y);
+    }
+    if (!s.a.empty()) samples.push_back(std::move(s));
+  }
+  return samples;
+}
+
 void compare_times(const BatchFolder& a, const BatchFolder& b, const std::vector<Pair>& pairs, const Bounds& bounds,
                    Comparison& to) {
   for (const BatchFolder* folder : {&a, &b})
@@ -249,26 +308,24 @@ void compare_times(const BatchFolder& a, const BatchFolder& b, const std::vector
       return;
     }
   const IndexTable times_a(a.path + "/timing.csv"), times_b(b.path + "/timing.csv");
-  const auto rows_a = rows_of_runs(times_a), rows_b = rows_of_runs(times_b);
-  std::vector<TimeSamples> samples;
-  for (const auto& [name, unit] : {std::pair("process_s", "s"), std::pair("load_s", "s"), std::pair("wall_s", "s"),
-                                   std::pair("frame_ns.p50", "ns"), std::pair("collision_frame_ns.p50", "ns")}) {
-    const auto of_a = times_a.find(name), of_b = times_b.find(name);
-    if (!of_a || !of_b) continue;
-    TimeSamples s{.name = name, .unit = unit, .is_paired = true};
-    for (const Pair& pair : pairs) {
-      const auto row_a = rows_a.find(a.index.cell(pair.row_a, *a.index.find("run")));
-      const auto row_b = rows_b.find(b.index.cell(pair.row_b, *b.index.find("run")));
-      if (row_a == rows_a.end() || row_b == rows_b.end()) continue;
-      const auto x = time_at(times_a, row_a->second, *of_a), y = time_at(times_b, row_b->second, *of_b);
-      if (!x || !y) continue;
-      s.a.push_back(*x);
-      s.b.push_back(*y);
-    }
-    if (!s.a.empty()) samples.push_back(std::move(s));
-  }
+  const std::vector<TimedPair> all = timed(a, b, pairs, times_a, times_b);
+  const ComparableTimes comparable = comparable_times(times_a, times_b, all);
+  const bool is_judged = !comparable.pairs.empty();
+  const std::vector<TimeSamples> samples = samples_of(times_a, times_b, is_judged ? comparable.pairs : all, is_judged);
   if (samples.empty()) return;
   to.times = judge_times(samples, {.effect = bounds.effect_apart, .alpha = kAlphaApart});
+  if (!is_judged) {
+    to.notices.push_back("times not comparable: " + comparable.difference);
+    for (TimeFigure& figure : to.times) figure.note = "not comparable: " + comparable.difference;
+    return;
+  }
+  if (!comparable.difference.empty())
+    to.notices.push_back(fmt::format("times of {} of {} runs not comparable, and left out: {}",
+                                     all.size() - comparable.pairs.size(), all.size(), comparable.difference));
+  if (!comparable.is_known)
+    to.notices.emplace_back(
+        "not told by both: with how many jobs, which cache and on what machine they were computed; where these differ "
+        "times tell nothing");
   to.notices.push_back(
       fmt::format("one batch was computed after the other: times count from {:.0f} % on; --programs "
                   "measures in turns",

@@ -44,7 +44,11 @@ auto of_frame() {
 }
 template <auto Method>
 auto of_body() {
-  return [](const FrameInCallback& frame, const std::string& body) { return (frame.get().*Method)(body); };
+  return [](const FrameInCallback& frame, const py::object& body) {
+    if (!py::isinstance<py::str>(body))
+      throw verisim::Failure(2, std::string(py::repr(body)) + " is no body's name; give a text");
+    return (frame.get().*Method)(body.cast<std::string>());
+  };
 }
 
 /// Whether the run goes on.
@@ -53,7 +57,10 @@ bool ask(const py::object& each_frame, const verisim::Frame& frame) {
   const auto ended = [](FrameInCallback* f) { f->end(); };
   const std::unique_ptr<FrameInCallback, decltype(ended)> end(shown.get(), ended);
   const py::object answer = each_frame(shown);
-  return answer.is_none() || answer.cast<bool>();
+  if (answer.is_none()) return true;
+  const int goes_on = PyObject_IsTrue(answer.ptr());
+  if (goes_on < 0) throw py::error_already_set();
+  return goes_on != 0;
 }
 
 /// Runs without Python's lock; what the scenario prints goes to sys.stderr, as the program's. Ctrl-C and what

@@ -84,6 +84,7 @@ std::string PreparedStore::path_of(std::string_view kind, const std::string& key
 }
 
 std::optional<std::string> PreparedStore::find(std::string_view kind, std::string_view key) {
+  ++asked_;
   const std::string key_hash = sha256(sha256(key) + version_);
   const std::string path = path_of(kind, key_hash);
   if (::access(path.c_str(), R_OK) != 0) return {};

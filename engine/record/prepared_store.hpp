@@ -38,6 +38,7 @@ class PreparedStore {
 
   [[nodiscard]] const std::string& folder() const { return folder_; }
   [[nodiscard]] std::size_t found() const { return found_; }
+  [[nodiscard]] std::size_t missed() const { return asked_ - found_; }
   [[nodiscard]] std::size_t kept() const { return kept_; }
   [[nodiscard]] std::size_t damaged() const { return damaged_; }  ///< entries that were not what was written
 
@@ -48,7 +49,7 @@ class PreparedStore {
   std::string folder_;
   std::string version_;
   std::uint64_t bytes_max_;
-  std::size_t found_ = 0, kept_ = 0, damaged_ = 0;
+  std::size_t asked_ = 0, found_ = 0, kept_ = 0, damaged_ = 0;
 };
 
 }  // namespace verisim

@@ -46,8 +46,11 @@ class Scenario {
   void attach(Simulation& simulation);
 
   [[nodiscard]] std::string parameters_json() const;  ///< all params{} as resolved
-  [[nodiscard]] const std::string& outcome() const;   ///< outcome("…"); empty if none was said
-  [[nodiscard]] double outcome_since() const;         ///< simulated time at which it became that [s]
+  /// The same, but what something overrules: null where --duration or --seed does, and of `integrator` the one that
+  /// acts, which `exact` chooses. @pre attached
+  [[nodiscard]] std::string parameters_in_effect_json() const;
+  [[nodiscard]] const std::string& outcome() const;  ///< outcome("…"); empty if none was said
+  [[nodiscard]] double outcome_since() const;        ///< simulated time at which it became that [s]
   [[nodiscard]] bool finished() const;  ///< the script asked to stop (outcome with stop, simulation:stop())
   [[nodiscard]] const std::vector<Measure>& measures() const;
   [[nodiscard]] std::vector<std::string> notices() const;  ///< warnings and ignored options, each once

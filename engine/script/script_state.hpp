@@ -109,6 +109,8 @@ class ScriptState : public Sandbox {
 
   std::optional<std::string> parameters_place;  ///< FILE:LINE of params{}
   std::string parameters_json = "{}";
+  std::optional<double> asked_duration,
+      asked_seed;  ///< as the script has them: --duration and --seed may say otherwise
   std::vector<std::string> parameter_names;
   std::vector<ParameterDeclaration> parameters;  ///< in the same order
   bool parameters_only = false;                  ///< the script ends at params{}

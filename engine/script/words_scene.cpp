@@ -102,9 +102,10 @@ int define_simulation_parameters(lua_State* L) {
   if (const auto seed = fields.number("seed")) {
     if (*seed < 0 || *seed > 0x1p53 || *seed != std::floor(*seed))
       raise(L, "seed is {:g} but must be a whole number from 0 to 2^53", *seed);
+    state.asked_seed = seed;
     if (!state.options.seed) p.seed = static_cast<std::uint64_t>(*seed);
   }
-  if (const auto duration = fields.positive("duration")) p.duration = duration;
+  if (const auto duration = fields.positive("duration")) state.asked_duration = p.duration = duration;
   p.frame_rate = fields.positive("frameRate").value_or(p.frame_rate);
   if (read_named(L, fields, "integrator", kIntegrators, p.integrator)) p.integrator_by_default = false;
   if (read_named(L, fields, "hybrid", hybrids(), p.hybrid)) p.hybrid_by_default = false;

@@ -100,6 +100,9 @@ double Simulation::time() const {
 double Simulation::dt() const {
   return implementation_->world.dt;
 }
+bool Simulation::is_implicit() const {
+  return implementation_->world.is_implicit();
+}
 std::uint64_t Simulation::frames_planned() const {
   const World& world = implementation_->world;
   double longest = 0;

@@ -65,6 +65,7 @@ class Simulation {
   [[nodiscard]] std::uint64_t frame() const;  ///< frames computed so far
   [[nodiscard]] double time() const;          ///< frame * dt
   [[nodiscard]] double dt() const;
+  [[nodiscard]] bool is_implicit() const;  ///< its integrator, whatever was asked for
   /// From duration or the longest device. Error(input) for more than a billion.
   [[nodiscard]] std::uint64_t frames_planned() const;
   [[nodiscard]] std::uint64_t collision_frames() const;

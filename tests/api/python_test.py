@@ -130,6 +130,79 @@ class PythonModule(ProgramTest):
         with self.assertRaisesRegex(verisim.Failure, "no body is called 'bxo'; did you mean 'box'"):
             self.run_small(each_frame=lambda frame: frame.pose("bxo"))
 
+    def test_values_of_another_kind_are_failures_that_say_what_is_wanted(self):
+        self.run_small()
+        before = sorted(os.listdir(self.folder))
+
+        def batch(**more):
+            return verisim.batch(self.scenario, self.path("b"), **more)
+
+        for wanted, call in (
+                ("seed: -1 is no whole number from 0 to 18446744073709551615", lambda: self.run_small(seed=-1)),
+                ("seed: 18446744073709551616 is no whole", lambda: self.run_small(seed=2**64)),
+                ("seed: 1.5 is no whole", lambda: self.run_small(seed=1.5)),
+                ("seed: 'x' is no whole", lambda: self.run_small(seed="x")),
+                ("seed: True is no whole", lambda: self.run_small(seed=True)),
+                ("threads: -1 is no whole number from 1 to 256", lambda: self.run_small(threads=-1)),
+                ("threads: None is no whole", lambda: self.run_small(threads=None)),
+                ("duration: '1s' is no time above 0; give seconds as a number", lambda: self.run_small(duration="1s")),
+                ("duration: -1 is no time", lambda: self.run_small(duration=-1)),
+                ("duration: nan is no time", lambda: self.run_small(duration=float("nan"))),
+                ("duration: inf is no time", lambda: self.run_small(duration=float("inf"))),
+                ("force: 'yes' is neither True nor False", lambda: self.run_small(force="yes")),
+                ("prepared: None is neither True nor False", lambda: self.run_small(prepared=None)),
+                ("each_frame: 3 cannot be called", lambda: self.run_small(each_frame=3)),
+                ("binds: .'a'. is no dict", lambda: self.run_small(binds=["a"])),
+                ("bind hand: 3 is no path", lambda: self.run_small(binds={"hand": 3})),
+                ("parameters: 7 is no dict", lambda: self.run_small(7)),
+                ("a parameter's name: 1 is no text", lambda: self.run_small({1: 2})),
+                ("word: None is no value of a parameter", lambda: self.run_small(word=None)),
+                ("word: {'a': 1} is no value of a parameter", lambda: self.run_small(word={"a": 1})),
+                ("scenario: None is no path", lambda: verisim.run(None, out=self.path("a.h5"))),
+                ("out: 3 is no path", lambda: self.run_small(out=3)),
+                ("path: 3 is no path", lambda: verisim.Run(3)),
+                ("3 is no name of a field", lambda: verisim.Run(self.path("a.h5"))[3]),
+                ("3 is no body's name", lambda: self.run_small(out=self.path("f.h5"), each_frame=lambda frame: frame.pose(3))),
+                ("seed: -1 is no whole", lambda: batch(seed=-1)),
+                ("repeat: 'x' is no whole number from 1", lambda: batch(repeat="x")),
+                ("jobs: 0 is no whole number from 1 to 4096", lambda: batch(jobs=0)),
+                ("duration: 'x' is no time", lambda: batch(duration="x")),
+                ("time_limit: 0 is no time", lambda: batch(time_limit=0)),
+                ("measure: 'yes' is neither", lambda: batch(measure="yes")),
+                ("retry_failed: 'yes' is neither", lambda: batch(retry_failed="yes")),
+                ("vary: .'word'. is no dict", lambda: batch(vary=["word"])),
+                ("word: None is no value", lambda: batch(vary={"word": [None]})),
+                ("random: 5 is no number of draws with a dict", lambda: batch(random=5)),
+                ("random: 'x' is no dict", lambda: batch(random=(2, "x"))),
+                ("keep: 3 is no text", lambda: batch(keep=3)),
+                ("keep.*some", lambda: batch(keep="some")),
+                ("folder: None is no path", lambda: verisim.Batch(None))):
+            with self.subTest(wanted), self.assertRaisesRegex(verisim.Failure, wanted) as raised:
+                call()
+            self.assertNotIn("pybind", str(raised.exception))
+            self.assertNotIn("incompatible", str(raised.exception))
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(self.path("f.h5"))
+        self.assertEqual(sorted(os.listdir(self.folder)), before, "nothing was begun")
+        # What is as good as an int, a bool or a number is taken, NumPy's among them.
+        run = self.run_small({"speed": numpy.float64(0.4)}, seed=numpy.int64(7), duration=numpy.float32(0.25), force=numpy.bool_(True),
+                             threads=numpy.uint8(1))
+        self.assertEqual((run.attributes["seed"], run.frames, run.parameters["speed"]), (7, 250, 0.4))
+        self.assertEqual(batch(vary={"speed": 0.4}, duration=0.01).rows()[0]["speed"], 0.4)
+        with self.assertRaisesRegex(verisim.Failure, "index.sqlite: no such column"):
+            verisim.Batch(self.path("b")).rows("SELECT nowhere FROM run")
+
+    def test_an_answer_of_each_frame_is_true_or_false_as_python_has_it(self):
+        for answer, frames in (("", 1), ([], 1), ("go on", 300), (None, 300), (numpy.bool_(False), 1)):
+            self.assertEqual(self.run_small(each_frame=lambda frame, a=answer: a).frames, frames, answer)
+
+    def test_a_batch_does_again_what_has_no_answer(self):
+        with self.assertWarnsRegex(RuntimeWarning, "--retry-failed does them again"):
+            verisim.batch(self.scenario, self.path("b"), vary={"duration": [0.05, 1e4]}, time_limit=0.5)
+        with self.assertWarnsRegex(RuntimeWarning, "no answer within 1 s"):
+            again = verisim.batch(self.scenario, self.path("b"), vary={"duration": [0.05, 1e4]}, time_limit=1, retry_failed=True)
+        self.assertEqual([row["status"] for row in again.rows()], ["done", "timeout"])
+
     def test_a_text_that_would_be_cut_at_a_nul_is_a_value_error(self):
         self.run_small()
         before = sorted(os.listdir(self.folder))

@@ -86,6 +86,42 @@ TEST(Index, OfShardsJoinedIsTheIndexOfTheWhole) {
   EXPECT_EQ(all.unit_of("clearance"), "m");
 }
 
+std::string schema_of(const std::string& path) {
+  Database database(path, Database::Access::read);
+  Statement statement = database.prepare("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY name");
+  std::string schema;
+  while (statement.step()) schema += plain_text(statement.column(0)) + "\n";
+  return schema;
+}
+
+TEST(Index, HasOneSchemaHoweverTheRowsCame) {
+  const test::Folder folder;
+  std::vector<std::string> schemas;
+  for (const auto& order : {std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5}, {4, 3, 5, 1, 0, 2}}) {
+    const std::string path = folder.path().string() + fmt::format("/{}.sqlite", schemas.size());
+    {
+      Index index(path, kLayout, "1");
+      for (const std::uint64_t run : order) index.add(head(run), answer(run));
+      index.write_csv(folder.path().string());
+      EXPECT_EQ(index.runs().size(), 6U);
+    }
+    schemas.push_back(schema_of(path));
+  }
+  EXPECT_EQ(schemas[0], schemas[1]);
+  EXPECT_LT(schemas[0].find("a late one"), schemas[0].find("depth"));
+}
+
+TEST(Index, ForgetsRunsWithoutAnAnswerAndNoOthers) {
+  const test::Folder folder;
+  Index index(folder.path().string() + "/index.sqlite", kLayout, "1");
+  for (std::uint64_t run = 0; run < 6; ++run) index.add(head(run), answer(run));
+  index.forget_unanswered();
+  EXPECT_EQ(index.runs(), (std::vector<std::uint64_t>{0, 1, 2, 4, 5}));
+  index.add(head(3), answer(4));
+  index.write_csv(folder.path().string());
+  EXPECT_EQ(index.count("done"), 6U);
+}
+
 TEST(Index, RefusesARunTwiceAndStaysAsItWas) {
   const test::Folder folder;
   Index index(folder.path().string() + "/index.sqlite", kLayout, "1");

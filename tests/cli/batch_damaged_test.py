@@ -76,6 +76,18 @@ class Damaged(Batches):
                 f.write(text)
             self.look(text, may_be_whole=True)  # the machine and the scenario's place may be others
 
+    def test_what_is_wrong_in_batch_json_is_named(self):
+        for text, words in (('{\n"format": "verisim-batch",\n]', "batch.json:3: is no JSON, or the file ends there"),
+                            (lambda whole: {**whole, "runs": "x"}, "batch.json: 'runs' is missing or not what it should be"),
+                            (lambda whole: {k: v for k, v in whole.items() if k != "groups"}, "'groups' is missing"),
+                            (lambda whole: {**whole, "design": {**whole["design"], "vary": [{"parameter": 7}]}}, "another design")):
+            self.copy()
+            if callable(text):
+                with open(self.path("b/batch.json")) as f:
+                    text = json.dumps(text(json.load(f)))
+            self.write("d/batch.json", text)
+            self.refuse(3, [words], "batch", self.scenario, "-o", self.path("d"), *DESIGN)
+
     def test_a_file_that_a_finished_batch_read(self):
         with open(self.scenario) as f:
             text = f.read()

@@ -286,8 +286,11 @@ class BadInput(Batches):
             """)
         done = self.run_program("batch", scenario, "--vary", "k=1,2", "--repeat", 3, "-o", self.path("b"))
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stderr.count("'omni' is driven by nothing"), 1, done.stderr)
-        self.assertIn("warns.lua:7: no", done.stderr)
+        told = [line for line in done.stderr.splitlines() if "'omni' is driven by nothing" in line]
+        self.assertEqual(len(told), 2, "once with its run, and once how many more: " + done.stderr)
+        self.assertRegex(told[0], r"^warning: run \d \(k=\d, seed \d+\): ")
+        self.assertIn("5 more runs say", told[1])
+        self.assertRegex(done.stderr, r"run [345] \(k=2, seed \d+\): .*warns.lua:7: no")
         rows = self.rows("b")
         more = int(rows[3]["warnings"]) - int(rows[0]["warnings"])
         self.assertEqual(more, 1)

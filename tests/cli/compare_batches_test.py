@@ -103,6 +103,50 @@ class Batches(Compare):
             (time,) = [t for t in report["times"] if t["name"] == "process_s"]
             self.assertAlmostEqual(time["ratio"] / factor, 1, delta=0.01)  # of pairs: runs of 1 to 30 s
 
+    def timing(self, conditions, slower=1, rows=30, columns="jobs,cache,cpu"):
+        """Of `rows` runs; conditions: of each run a text for these columns, or one for all."""
+        draw = random.Random(7)
+        each = [conditions] * rows if isinstance(conditions, str) else conditions
+        return f"run,process_s,wall_s,{columns}\n" + "".join(
+            f"{i},{(1 + i) * slower * (1 + 0.01 * draw.random()):.6f},0.1,{each[i]}\n" for i in range(rows))
+
+    def test_times_under_other_conditions_are_no_verdict(self):
+        rows = 30
+        index = INDEX.split("\n")[0] + "\n" + "".join(
+            f"{i},{i},0.005,a,done,,inserted,0.2,1000,500,3,0.001,done,aa,5000,700\n" for i in range(rows))
+        a = self.batch("a", index, self.timing("1,warm,x"))
+        for conditions, words in (("2,warm,x", "jobs 1 and 2"), ("1,off,x", "cache warm and off"), ("1,warm,y", "cpu x and y"),
+                                  ("4,cold,y", "jobs 1 and 4; cache warm and cold; cpu x and y"), ("1,,x", "cache warm and not told")):
+            report = self.compare(a, self.batch("b", index, self.timing(conditions, slower=3)), code=0)
+            self.assertEqual(report["verdict"], "same", conditions)
+            self.assertIn("times not comparable: " + words, report["notes"])
+            self.assertEqual({t["note"] for t in report["times"]}, {"not comparable: " + words})
+            self.assertAlmostEqual(next(t["ratio"] for t in report["times"] if t["name"] == "process_s"), 3, delta=0.1)
+        # Counts and outcomes are compared all the same.
+        report = self.compare(a, self.batch("b", index.replace(",5000,", ",5001,"), self.timing("2,warm,x", slower=3)), code=1)
+        self.assertEqual((report["verdict"], report["why"]), ("worse", ["cost.points_tested is higher"]))
+
+    def test_runs_under_the_same_conditions_are_judged_without_the_others(self):
+        rows = 30
+        index = INDEX.split("\n")[0] + "\n" + "".join(
+            f"{i},{i},0.005,a,done,,inserted,0.2,1000,500,3,0.001,done,aa,5000,700\n" for i in range(rows))
+        mixed = ["1,cold,x"] * 3 + ["1,warm,x"] * (rows - 3)
+        report = self.compare(self.batch("a", index, self.timing(mixed)),
+                              self.batch("b", index, self.timing("1,warm,x", slower=3)), code=1)
+        self.assertEqual(report["verdict"], "worse")
+        self.assertIn("times of 3 of 30 runs not comparable, and left out: cache cold and warm in 3 of 30 runs", report["notes"])
+        self.assertEqual(next(t["repetitions"] for t in report["times"] if t["name"] == "process_s"), [27, 27])
+
+    def test_what_does_not_tell_its_conditions_is_said(self):
+        report = self.compare(self.batch("a"), self.batch("b"), code=0)
+        self.assertTrue([n for n in report["notes"] if n.startswith("not told by both: with how many jobs")], report["notes"])
+
+    def test_a_broken_batch_json_is_told_with_its_line(self):
+        a = self.batch("a")
+        b = self.batch("b")
+        self.write("b/batch.json", '{\n "format": "verisim-batch",\n "runs" 4\n}')
+        self.refuse(3, ["b/batch.json:3: is no JSON", "make the batch again"], "compare", a, b)
+
     def test_what_is_no_batch_is_refused(self):
         a = self.batch("a")
         self.refuse(3, "batch.json", "compare", a, self.folder)

@@ -16,9 +16,7 @@ from ._verisim import RunRequest as _RunRequest
 from ._verisim import run as _run
 from .batches import Batch, batch
 from .run_file import Run
-from .values import line_of as _line_of
-from .values import path_of as _path_of
-from .values import settings as _settings
+from . import values as _values
 
 __all__ = ["Batch", "Failure", "Frame", "Run", "batch", "run", "version"]
 __version__ = version()
@@ -31,27 +29,29 @@ def run(scenario, parameters=None, *, seed=None, duration=None, out=None, force=
     out: the run file (default: runs/NAME.h5, or runs/NAME-2.h5 … while another run has that; Run.path says which).
     binds: {"omni": "reach.csv"}, as --bind. each_frame: called with a Frame after every frame, which is over when the
     call is; False ends the run. parameters and more: the scenario's own, numbers or texts with units ("1mm"); one that
-    has the name of a keyword here goes into the dict: {"duration": 2}. Failure for bad input, and if the file cannot be
-    written; ValueError for a path, name or text that has a NUL character or is not UTF-8; what the program would warn
+    has the name of a keyword here goes into the dict: {"duration": 2}. Failure for bad input, a value of another kind
+    among it, and if the file cannot be written; ValueError for a path, name or text that has a NUL character or is not UTF-8; what the program would warn
     of, and a run that did not come to its end, are warnings and are kept in Run.warnings and Run.error. Ctrl-C ends
     the run and keeps its file.
     """
     request = _RunRequest()
-    request.scenario = _path_of("scenario", scenario)
-    request.parameters = _settings(parameters, more)
-    request.binds = [(_line_of("the name of a bind", name), _path_of(f"bind {name}", source))
-                     for name, source in (binds or {}).items()]
-    request.seed = seed
-    request.duration = duration
-    request.force = force
-    request.threads = threads
-    request.prepared = prepared
+    request.scenario = _values.path_of("scenario", scenario)
+    request.parameters = _values.settings(parameters, more)
+    request.binds = [(_values.line_of("the name of a bind", name), _values.path_of(f"bind {name}", source))
+                     for name, source in _values.items_of("binds", binds)]
+    request.seed = None if seed is None else _values.seed_of(seed)
+    request.duration = None if duration is None else _values.seconds_of("duration", duration)
+    request.force = _values.flag_of("force", force)
+    request.threads = _values.whole_of("threads", threads, 1, 256)
+    request.prepared = _values.flag_of("prepared", prepared)
+    if each_frame is not None and not callable(each_frame):
+        raise Failure(f"each_frame: {_values.shown(each_frame)} cannot be called; give a function that takes a Frame")
     if out is None:
         with _default_out(request.scenario) as request.out:
             request.another_name = True
             run = _run_and_open(request, each_frame)
     else:
-        request.out = _path_of("out", out)
+        request.out = _values.path_of("out", out)
         if not request.out:
             raise Failure("out: is empty; name a run file, or leave it out for runs/NAME.h5")
         run = _run_and_open(request, each_frame)

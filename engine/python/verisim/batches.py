@@ -9,7 +9,7 @@ import urllib.parse
 import warnings
 
 from ._verisim import Failure
-from .values import line_of, list_of, path_of, settings
+from .values import flag_of, items_of, line_of, list_of, path_of, seconds_of, seed_of, settings, shown, whole_of
 
 
 class Batch:
@@ -32,6 +32,8 @@ class Batch:
         try:
             database.row_factory = sqlite3.Row
             return [dict(row) for row in database.execute(query)]
+        except sqlite3.DatabaseError as error:
+            raise Failure(f"{self._index}: {error}; look at the query, or make the batch again in another folder") from error
         finally:
             database.close()
 
@@ -43,29 +45,34 @@ class Batch:
 
 
 def batch(scenario, out, parameters=None, *, vary=None, repeat=1, seed=None, design=None, random=None, jobs=None, duration=None,
-          measure=False, keep="summary", time_limit=None, binds=None, **more):
+          measure=False, keep="summary", time_limit=None, retry_failed=False, binds=None, **more):
     """Runs many: vary={"clearance": ["1mm", "0.1mm"]} is a grid, random=(1000, {"clearance": "1mm..5mm"}) draws, design
-    a CSV file. parameters and more: as in run(). Goes on where a batch in the folder `out` stopped. Failure as the
+    a CSV file. parameters and more: as in run(). Goes on where a batch in the folder `out` stopped; retry_failed does
+    again what was killed, crashed, or had too little time or memory. Failure as the
     program says it; a run that could not be done is a row, and a warning says how many there are. ValueError: as of run()."""
     out = path_of("out", out)
     if not out:
         raise Failure("out: is empty; name a folder")
-    arguments = ["batch", path_of("scenario", scenario), "-o", out, "--json", "--repeat", str(repeat), "--keep", keep]
-    for key, values in (vary or {}).items():
+    arguments = ["batch", path_of("scenario", scenario), "-o", out, "--json", "--repeat",
+                 str(whole_of("repeat", repeat, 1, 10_000_000)), "--keep", line_of("keep", keep)]
+    for key, values in items_of("vary", vary):
         arguments += ["--vary", f"{line_of('the name of what varies', key)}={list_of(key, values)}"]
     for key, text in settings(parameters, more):
         arguments += ["--set", f"{key}={text}"]
-    for name, source in (binds or {}).items():
+    for name, source in items_of("binds", binds):
         arguments += ["--bind", f"{line_of('the name of a bind', name)}={path_of(f'bind {name}', source)}"]
-    for option, value in (("--seed", seed), ("--design", design), ("--jobs", jobs), ("--duration", duration),
-                          ("--time-limit", time_limit)):
+    for option, value, text_of in (("--seed", seed, seed_of), ("--design", design, lambda v: path_of("design", v)),
+                                   ("--jobs", jobs, lambda v: whole_of("jobs", v, 1, 4096)),
+                                   ("--duration", duration, lambda v: seconds_of("duration", v)),
+                                   ("--time-limit", time_limit, lambda v: seconds_of("time_limit", v))):
         if value is not None:
-            arguments += [option, path_of("design", value) if option == "--design" else str(value)]
-    if measure:
+            arguments += [option, str(text_of(value))]
+    if flag_of("measure", measure):
         arguments.append("--measure")
+    if flag_of("retry_failed", retry_failed):
+        arguments.append("--retry-failed")
     if random is not None:
-        draws, keys = random
-        arguments += ["--random", str(draws), *(line_of("random", f"{key}={text}") for key, text in keys.items())]
+        arguments += ["--random", *_draws(random)]
     exit_code, printed, said = _ended([_program(), *arguments])
     lines = said.strip().splitlines()
     if exit_code not in (0, 1) or not printed:
@@ -75,6 +82,13 @@ def batch(scenario, out, parameters=None, *, vary=None, repeat=1, seed=None, des
     made = Batch(out)
     made.report = json.loads(printed)
     return made
+
+
+def _draws(random):
+    if not isinstance(random, (tuple, list)) or len(random) != 2:
+        raise Failure(f'random: {shown(random)} is no number of draws with a dict; give (1000, {{"clearance": "1mm..5mm"}})')
+    draws, keys = random
+    return [str(whole_of("random", draws, 0, 10_000_000)), *(line_of("random", f"{key}={text}") for key, text in items_of("random", keys))]
 
 
 def _ended(command):

@@ -3,7 +3,7 @@ import json
 import os
 
 from ._verisim import Failure, RunFile
-from .values import path_of
+from .values import path_of, shown
 
 
 class Run:
@@ -38,6 +38,8 @@ class Run:
             raise Failure(f"{self.path}: its parameters cannot be read; the file is damaged, simulate again") from error
 
     def __getitem__(self, path):
+        if not isinstance(path, str):
+            raise Failure(f"{shown(path)} is no name of a field; give a text: run['state/time']")
         path = "/" + path.lstrip("/")
         if path not in self._read:
             self._read[path] = self._file.read(path)
