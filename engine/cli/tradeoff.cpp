@@ -100,6 +100,17 @@ bool all_failed(const Table& table) {
                                             [](const tradeoff::Row& row) { return !row.failed.empty(); });
 }
 
+/// Nothing where no figure of a bound is a greatest one: `flips` is a share of the repetitions.
+bool has_coverage(const tradeoff::Bounds& bounds) {
+  return bounds.budget_us || (bounds.error && bounds.error->kind != Kind::flips);
+}
+
+ordered_json json_of_setting(const Table& table, std::size_t setting, const tradeoff::Bounds& bounds) {
+  return {{"row", setting},
+          {"parameters", table.rows[setting].parameters},
+          {"coverage", has_coverage(bounds) ? ordered_json(tradeoff::coverage_of(table.repeat)) : ordered_json()}};
+}
+
 /// 1 and a line on stderr if no setting keeps the bounds, or none has figures.
 int tell(const Table& table, const Question& question, bool as_json) {
   const bool asked = question.bounds.budget_us || question.bounds.error;
@@ -107,14 +118,13 @@ int tell(const Table& table, const Question& question, bool as_json) {
   if (asked) setting = choose(table.rows, question.bounds, question.by);
   if (as_json) {
     ordered_json all = json_of(table);
-    if (asked)
-      all["setting"] =
-          setting ? ordered_json{{"row", *setting}, {"parameters", table.rows[*setting].parameters}} : ordered_json();
+    if (asked) all["setting"] = setting ? json_of_setting(table, *setting, question.bounds) : ordered_json();
     std::printf("%s\n", json_text(all).c_str());
   } else {
     print_table(table);
     if (setting)
       std::printf("setting: %s (%zu)\n", tradeoff::text_of(table.rows[*setting].parameters).c_str(), *setting);
+    if (setting && has_coverage(question.bounds)) std::printf("  %s\n", tradeoff::coverage_text(table.repeat).c_str());
   }
   if (all_failed(table)) {
     print_error(("no setting has figures; the first: " + table.rows.front().failed).c_str());
@@ -176,7 +186,10 @@ void add_sweep_options(CLI::App& command, SweepRequest& sweep) {
                   "of each dial, at a tenth of the step)")
       ->allow_extra_args(false)
       ->take_all();
-  command.add_option("--repeat", sweep.repeat, "Repetitions, each with its own seed (default 3)")
+  command
+      .add_option("--repeat", sweep.repeat,
+                  "Repetitions, each with its own seed (default 3): bounds that all N keep hold in N/(N+1) of "
+                  "further trials, 95 % with 19")
       ->check(CLI::Range(1, 10000));
   add_seed_option(
       command, [&sweep](std::uint64_t seed) { sweep.seed = seed; },

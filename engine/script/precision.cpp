@@ -62,20 +62,46 @@ void check_dials(const Table& table, const ordered_json& parameters, const Preci
              shown(dial, 40));
 }
 
-std::vector<std::string> notices_of(const Table& table, const ordered_json& parameters,
-                                    const PrecisionRequest& request) {
-  std::vector<std::string> notices;
+std::string seconds_text(const std::optional<double>& duration) {
+  return duration ? fmt::format("{:g} s", *duration) : std::string("its trace");
+}
+
+/// In what this run is another trial than the table's: "depth is 0.021 here and 0.02 there"; empty: in nothing.
+std::string other_trial(const Table& table, const ordered_json& parameters, const PrecisionRequest& request) {
   std::string other;
+  const auto add = [&](const std::string& text) { other += (other.empty() ? "" : ", ") + text; };
   for (const auto& [name, value] : table.fixed)
     if (parameters.contains(name) && !is_same(parameters.at(name), value))
-      other += fmt::format("{}{} is {} here and {} there", other.empty() ? "" : ", ", shown(name, 40),
-                           shown(set_text(parameters.at(name)), 40), shown(set_text(value), 40));
+      add(fmt::format("{} is {} here and {} there", shown(name, 40), shown(set_text(parameters.at(name)), 40),
+                      shown(set_text(value), 40)));
+  const std::optional<double> there = table.duration ? table.duration : request.duration_of_script;
+  if (request.duration != there)
+    add(fmt::format("it lasts {} here and {} there", seconds_text(request.duration), seconds_text(there)));
+  return other;
+}
+
+[[noreturn]] void refuse_other_trial(const PrecisionRequest& request, const std::string& other) {
+  fail(ErrorKind::input,
+       "{} is of another trial: {}; what it says of errors and times need not hold here: make a table of this trial "
+       "(verisim tradeoff {} with the same --set and --duration), name the setting with --set and leave precision out, "
+       "or say precisionOutside = \"careful\" for its most accurate setting without a promise",
+       request.table, other, request.scenario);
+}
+
+std::vector<std::string> notices_of(const Table& table, const PrecisionRequest& request, const std::string& other,
+                                    const Bounds& bounds, tradeoff::Kind by) {
+  std::vector<std::string> notices;
   if (!other.empty())
-    notices.push_back(fmt::format("precision: {} was made of another trial: {}; its errors and times need not hold",
-                                  request.table, other));
+    notices.push_back(
+        fmt::format("precision: {} is of another trial: {}; its most accurate setting is taken, and the bounds are not "
+                    "promised",
+                    request.table, other));
   if (table.scenario_sha256 != request.scenario_sha256)
     notices.push_back(fmt::format("precision: {} was made before {} was changed; its errors and times need not hold",
                                   request.table, request.scenario));
+  const bool has_coverage = bounds.budget_us || by != tradeoff::Kind::flips;
+  if (has_coverage && tradeoff::coverage_of(table.repeat) < tradeoff::kWantedCoverage)
+    notices.push_back(fmt::format("precision: {}: {}", request.table, tradeoff::coverage_text(table.repeat)));
   return notices;
 }
 
@@ -89,7 +115,10 @@ PrecisionChoice choose_precision(const PrecisionRequest& request, const std::str
   check_dials(table, parameters, request);
   for (Row& row : table.rows)
     if (!agrees(row, parameters, request)) row.failed = "the command line says otherwise";
-  const std::optional<std::size_t> chosen = tradeoff::choose(table.rows, bounds, by);
+  const std::string other = other_trial(table, parameters, request);
+  if (!other.empty() && !request.careful) refuse_other_trial(request, other);
+  const std::optional<std::size_t> chosen = tradeoff::choose(
+      table.rows, bounds, by, other.empty() ? tradeoff::Prefer::cheapest : tradeoff::Prefer::most_accurate);
   if (!chosen)
     fail(ErrorKind::input,
          "no setting of {} keeps {}; ask for less, or make a table with more settings: verisim tradeoff {} --vary …",
@@ -100,11 +129,13 @@ PrecisionChoice choose_precision(const PrecisionRequest& request, const std::str
     if (!is_set(request, dial)) choice.sets.emplace_back(dial, set_text(value));
   const tradeoff::ErrorKindInfo& kind = tradeoff::kKinds[index_of(by)];
   const std::optional<tradeoff::Spread>& error = row.errors[index_of(by)];
-  choice.event = fmt::format("{}; row {} of {}: {:.3g} us, {} {}; {:.0f} % of trials; times of {}",
-                             tradeoff::text_of(row.parameters), *chosen, request.table, row.time_us.most, kind.name,
-                             error ? fmt::format("{:.3g} {}", error->most, kind.unit) : std::string("not known"),
-                             100 * tradeoff::coverage_of(table.repeat), shown(table.cpu, 50));
-  choice.notices = notices_of(table, parameters, request);
+  choice.event = fmt::format(
+      "{}; row {} of {}: {:.3g} us, {} {}; {}; times of {}", tradeoff::text_of(row.parameters), *chosen, request.table,
+      row.time_us.most, kind.name, error ? fmt::format("{:.3g} {}", error->most, kind.unit) : std::string("not known"),
+      other.empty() ? fmt::format("{:.3g} % of trials", 100 * tradeoff::coverage_of(table.repeat))
+                    : std::string("of another trial, nothing is promised"),
+      shown(table.cpu, 50));
+  choice.notices = notices_of(table, request, other, bounds, by);
   return choice;
 }
 

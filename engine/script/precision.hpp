@@ -16,7 +16,9 @@ struct PrecisionRequest {
   std::optional<std::string> budget, error, by;  ///< as --budget, --error and --by of `verisim tradeoff`
   std::string scenario;                          ///< its name
   std::string scenario_sha256;
-  std::string parameters_json;                            ///< as resolved without a choice
+  std::string parameters_json;                         ///< as resolved without a choice
+  std::optional<double> duration, duration_of_script;  ///< of this run; without --duration
+  bool careful = false;  ///< another trial than the table's is no error: the most accurate setting, without a promise
   std::vector<std::pair<std::string, std::string>> sets;  ///< of the command line: dials that it names are not chosen
 };
 
@@ -26,7 +28,8 @@ struct PrecisionChoice {
   std::vector<std::string> notices;                       ///< in what the table is not of this run
 };
 
-/// Error(input): no bound, a damaged table, one of another scenario, or no row that keeps the bounds (says what to do).
+/// Error(input): no bound, a damaged table, one of another scenario or (unless `careful`) of another trial, whose
+/// errors and times say nothing of this one; or no row that keeps the bounds (says what to do).
 [[nodiscard]] PrecisionChoice choose_precision(const PrecisionRequest& request, const std::string& table_text);
 
 }  // namespace verisim::script

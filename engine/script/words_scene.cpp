@@ -65,19 +65,27 @@ void read_precision(lua_State* L, Fields& fields) {
   request.budget = fields.text("budget");
   request.error = fields.text("error");
   request.by = fields.text("errorBy");
+  const auto outside = fields.text("precisionOutside");
+  if (outside) {
+    if (*outside != "careful" && *outside != "refuse")
+      raise(L, "precisionOutside is '{}' but must be \"refuse\" or \"careful\"", shown(*outside, 40));
+    request.careful = *outside == "careful";
+  }
   bool is_auto = false;
   if (fields.push("precision")) {
     is_auto = lua_type(L, -1) == LUA_TSTRING && text_at(L, -1, "precision") == "auto";
     lua_pop(L, 1);
     if (!is_auto) accept_without_effect(L, fields, {"precision"});
   }
-  if (!is_auto && (request.budget || request.error || request.by))
-    raise(L, "budget, error and errorBy are bounds of precision = \"auto\"; say that too");
+  if (!is_auto && (request.budget || request.error || request.by || outside))
+    raise(L, "budget, error, errorBy and precisionOutside are of precision = \"auto\"; say that too");
   if (!is_auto || state.options.ignores_precision) return;
   request.scenario = state.name();
   request.scenario_sha256 = sha256(state.inputs.read(state.name()));
   request.parameters_json = state.parameters_json;
   request.sets = state.options.sets;
+  request.duration_of_script = state.scene.parameters.duration;
+  request.duration = state.options.duration ? state.options.duration : request.duration_of_script;
   if (!state.inputs.exists(request.table))
     raise(L,
           "precision is 'auto' and there is no {}; make it: verisim tradeoff {} --vary KEY=V1,V2 --repeat 19 -o {}, "

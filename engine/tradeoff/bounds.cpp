@@ -100,14 +100,21 @@ ErrorBound error_bound_from(const std::string& what, const std::string& text, co
   fail(ErrorKind::usage, "{}: no error is of unit '{}'; a budget of time is --budget", what, error.unit);
 }
 
-std::optional<std::size_t> choose(const std::vector<Row>& rows, const Bounds& bounds, Kind by) {
+std::optional<std::size_t> choose(const std::vector<Row>& rows, const Bounds& bounds, Kind by, Prefer prefer) {
+  const bool by_load = bounds.error.has_value() && prefer == Prefer::cheapest;
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].failed.empty() || !keeps(rows[i], bounds)) continue;
-    if (!best || is_better(rows[i], rows[*best], bounds.error.has_value(), bounds.error ? bounds.error->kind : by))
-      best = i;
+    if (!best || is_better(rows[i], rows[*best], by_load, bounds.error ? bounds.error->kind : by)) best = i;
   }
   return best;
+}
+
+std::string coverage_text(std::uint64_t repetitions) {
+  const double coverage = coverage_of(repetitions);
+  return fmt::format("bounds that {} kept are expected to hold in {:.3g} % of further trials{}",
+                     repetitions == 1 ? "the one repetition" : fmt::format("all {} repetitions", repetitions),
+                     100 * coverage, coverage < kWantedCoverage ? "; --repeat 19 makes it 95 %" : "");
 }
 
 std::string text_of(const Bounds& bounds) {

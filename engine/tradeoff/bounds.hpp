@@ -35,10 +35,21 @@ struct Quantity {
 /// empty, names another kind of that unit. Error(usage): no such unit, kind and unit do not go together, not above 0.
 [[nodiscard]] ErrorBound error_bound_from(const std::string& what, const std::string& text, const std::string& by);
 
+/// What makes one of several rows that keep the bounds the better answer: least load if an error is bounded, else the
+/// least error; or the least error in any case, as far from the bound as can be.
+enum class Prefer { cheapest, most_accurate };
+
 /// The row that keeps the bounds: with an error bound the one of least load, else the most accurate by `by`. A bound is
 /// held against what a row had at worst: the greatest time and the greatest error of its repetitions. Of equal rows
 /// the first; none: no row keeps them.
-[[nodiscard]] std::optional<std::size_t> choose(const std::vector<Row>& rows, const Bounds& bounds, Kind by);
+[[nodiscard]] std::optional<std::size_t> choose(const std::vector<Row>& rows, const Bounds& bounds, Kind by,
+                                                Prefer prefer = Prefer::cheapest);
+
+/// "bounds that all 3 repetitions kept are expected to hold in 75 % of further trials": of a setting, of its error and
+/// its time together, for of n + 1 trials each is as likely to be the one that does not. With what makes it 95 % where
+/// it is less. (Not of `flips`, which is a share of the repetitions.)
+[[nodiscard]] std::string coverage_text(std::uint64_t repetitions);
+inline constexpr double kWantedCoverage = 0.95;
 
 /// "a median frame of at most 200 us, an error of force of at most 0.05 N".
 [[nodiscard]] std::string text_of(const Bounds& bounds);

@@ -72,5 +72,21 @@ TEST(Choose, HoldsABoundAgainstTheWorst) {
   EXPECT_EQ(choose(rows, {.budget_us = 30, .error = {}}, Kind::force), 0u);
 }
 
+TEST(Choose, IsAsFarFromTheBoundsAsCanBeWhereThatIsPreferred) {
+  const std::vector<Row> rows = {row_of(10, 5), row_of(20, 1), row_of(50, 0.1)};
+  const Bounds error{.budget_us = {}, .error = ErrorBound{Kind::force, 10}};
+  EXPECT_EQ(choose(rows, error, Kind::force, Prefer::most_accurate), 2u);
+  const Bounds both{.budget_us = 30, .error = ErrorBound{Kind::force, 10}};
+  EXPECT_EQ(choose(rows, both, Kind::force, Prefer::most_accurate), 1u) << "a budget is kept all the same";
+}
+
+TEST(Coverage, IsToldWithWhatMakesItEnough) {
+  EXPECT_EQ(coverage_text(3),
+            "bounds that all 3 repetitions kept are expected to hold in 75 % of further trials; "
+            "--repeat 19 makes it 95 %");
+  EXPECT_EQ(coverage_text(19), "bounds that all 19 repetitions kept are expected to hold in 95 % of further trials");
+  EXPECT_NE(coverage_text(1).find("the one repetition kept are expected to hold in 50 %"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace verisim::bounds_test
