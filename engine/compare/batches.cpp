@@ -6,7 +6,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
 
 #include "engine/base/error.hpp"
 #include "engine/base/run_figures.hpp"
@@ -95,15 +94,16 @@ std::vector<Pair> pairs_of(const IndexTable& a, const IndexTable& b, Comparison&
   std::set<std::string> common, overruled;
   const std::set<std::string> of_a = parameters_of(a), of_b = parameters_of(b);
   std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::inserter(common, common.end()));
-  for (const auto& [name, index, letter] : {std::tuple("duration", &a, 'A'),
-                                            {"duration", &b, 'B'},
-                                            {"parameter.seed", &a, 'A'},
-                                            {"parameter.seed", &b, 'B'}})
-    if (common.count(name) != 0 && is_overruled(*index, name)) {
-      common.erase(name);
-      overruled.insert(name);
-      to.notices.push_back(fmt::format("parameter '{}' has no effect in {}: an option says otherwise", name, letter));
-    }
+  for (const char* name : {"duration", "parameter.seed"}) {
+    if (common.count(name) == 0) continue;
+    const bool in_a = is_overruled(a, name), in_b = is_overruled(b, name);
+    if (!in_a && !in_b) continue;
+    common.erase(name);
+    overruled.insert(name);
+    if (in_a != in_b)
+      to.notices.push_back(
+          fmt::format("parameter '{}' has no effect in {}: an option says otherwise", name, in_a ? "A" : "B"));
+  }
   for (const std::string& name : of_a)
     if (common.count(name) + overruled.count(name) == 0)
       to.notices.push_back("parameter '" + shown(name, 60) + "' is only in A");

@@ -191,6 +191,10 @@ class InEffect(Batches):
     def test_batches_of_other_durations_still_have_the_same_runs(self):
         self.batch_json("b", "--vary", "hybrid=restore,exact")
         self.batch_json("d", "--vary", "hybrid=restore,exact", "--duration", 0.02)
+        self.batch_json("e", "--vary", "hybrid=restore,exact", "--duration", 0.03)
+        both = json.loads(self.run_program("compare", self.path("d"), self.path("e"), "--json").stdout)
+        self.assertEqual((both["only_a"], both["only_b"]), ([], []))
+        self.assertNotIn("has no effect", " ".join(both["notes"]))
         report = json.loads(self.run_program("compare", self.path("b"), self.path("d"), "--json").stdout)
         self.assertEqual((report["only_a"], report["only_b"]), ([], []))
         self.assertIn("parameter 'duration' has no effect in B: an option says otherwise", report["notes"])
