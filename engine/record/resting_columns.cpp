@@ -17,6 +17,7 @@ using hdf5::Handle;
 // few, and small enough to fit into the cache of those who read row by row (1 MiB with h5py).
 constexpr std::size_t kWrittenChunkRows = 256;
 constexpr std::size_t kStoredChunkRows = 4096;
+constexpr std::size_t kStoredStep = std::size_t{1} << 16;  // rows, of chunks that are stored at a time
 constexpr std::size_t kLengthStep = std::size_t{1} << 20;  // rows; a file left open claims no more than that in vain
 constexpr std::uint64_t kIndexPage = 4096;                 // bytes
 constexpr std::size_t kRestBytesMax = 256;                 // so that a stored chunk is of 1 MiB at most
@@ -24,10 +25,6 @@ constexpr hsize_t kChunkBytesMax = hsize_t{1} << 20;
 
 bool is_zero(const Column& column) {
   return std::all_of(column.rest.begin(), column.rest.end(), [](std::byte b) { return b == std::byte{0}; });
-}
-
-hsize_t chunk_rows(const Column& column) {
-  return is_zero(column) ? kWrittenChunkRows : kStoredChunkRows;
 }
 
 bool is_awake(const std::uint64_t* words, std::size_t part) {
@@ -40,10 +37,15 @@ std::size_t length_for(std::size_t rows, std::size_t planned) {
   return planned >= rows && planned > 0 ? std::min(planned, steps) : steps;
 }
 
+/// Whole chunks for so many rows, of a dataset of this length.
+std::size_t stored_for(std::size_t rows, std::size_t length) {
+  return (std::min(rows, length) + kStoredChunkRows - 1) / kStoredChunkRows * kStoredChunkRows;
+}
+
 }  // namespace
 
 RestingColumns::RestingColumns(const Schema& schema, std::size_t rows_planned)
-    : row_bytes_(schema.row_bytes()), length_(length_for(0, rows_planned)) {
+    : row_bytes_(schema.row_bytes()), length_(length_for(0, rows_planned)), stored_(stored_for(kStoredStep, length_)) {
   for (const Column& column : schema.columns()) {
     if (column.rest.empty()) continue;
     VERISIM_ASSERT(column.bytes() <= kRestBytesMax);
@@ -51,6 +53,7 @@ RestingColumns::RestingColumns(const Schema& schema, std::size_t rows_planned)
     const bool same_part = !columns_.empty() && columns_.back().column.part == column.part;
     part_bytes_ = (same_part ? part_bytes_ : 0) + column.bytes();
     part_bytes_max_ = std::max(part_bytes_max_, part_bytes_);
+    if (!is_zero(column)) step_bytes_ += kStoredStep * column.bytes() / 64 + kIndexPage;  // deflated() makes less
     Resting resting;
     resting.column = column;
     columns_.push_back(std::move(resting));
@@ -62,7 +65,7 @@ Handle RestingColumns::create(hid_t file, const Column& column, hid_t type) cons
   const int rank = column.width == 1 ? 1 : 2;
   const hsize_t now[2] = {length_, column.width};
   const hsize_t max[2] = {H5S_UNLIMITED, column.width};
-  const hsize_t chunk[2] = {chunk_rows(column), column.width};
+  const hsize_t chunk[2] = {is_zero(column) ? kWrittenChunkRows : kStoredChunkRows, column.width};
   const Handle space(check(H5Screate_simple(rank, now, max), "shape"), H5Sclose);
   const Handle creation(check(H5Pcreate(H5P_DATASET_CREATE), "dataset"), H5Pclose);
   check_status(H5Pset_chunk(creation, rank, chunk), "chunk");
@@ -73,63 +76,66 @@ Handle RestingColumns::create(hid_t file, const Column& column, hid_t type) cons
       check(H5Dcreate2(file, column.path.c_str(), type, space, links, creation, H5P_DEFAULT), column.path.c_str()),
       H5Dclose);
   hdf5::write_attribute(dataset, kRests, std::int64_t{1});
+  if (!is_zero(column)) store_chunks(dataset, column, 0, stored_);
   return dataset;
 }
 
-void RestingColumns::open(hid_t file) {
-  for (Resting& resting : columns_) {
-    const Column& column = resting.column;
-    const Handle access(check(H5Pcreate(H5P_DATASET_ACCESS), "access"), H5Pclose);
-    check_status(H5Pset_chunk_cache(access, 1, chunk_rows(column) * column.bytes(), 1.0), "cache");
-    resting.dataset = Handle(check(H5Dopen2(file, column.path.c_str(), access), column.path.c_str()), H5Dclose);
-    resting.type = Handle(check(H5Dget_type(resting.dataset), "type"), H5Tclose);
-    if (!is_zero(column)) resting.chunk = deflated(column.rest, kStoredChunkRows);
-    store_chunks(resting, 0);
+void RestingColumns::store_chunks(hid_t dataset, const Column& column, std::size_t from, std::size_t to) {
+  const std::vector<std::byte> chunk = deflated(column.rest, kStoredChunkRows);
+  for (std::size_t row = from; row < to; row += kStoredChunkRows) {
+    const hsize_t start[2] = {row, 0};
+    check_status(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, start, chunk.size(), chunk.data()), column.path.c_str());
   }
 }
 
-// Each a whole chunk before its first row is: by then a later flush than its own has made it safe.
-void RestingColumns::store_chunks(Resting& resting, std::size_t rows) const {
-  if (resting.chunk.empty()) return;
-  const std::size_t end = std::min(length_, rows + kStoredChunkRows);
-  const bool late = resting.chunks * kStoredChunkRows < rows;  // the run is longer than it was planned
-  for (; resting.chunks * kStoredChunkRows < end; ++resting.chunks) {
-    const hsize_t start[2] = {resting.chunks * kStoredChunkRows, 0};
-    check_status(H5Dwrite_chunk(resting.dataset, H5P_DEFAULT, 0, start, resting.chunk.size(), resting.chunk.data()),
-                 resting.column.path.c_str());
+Handle RestingColumns::opened(const Column& column) const {
+  VERISIM_ASSERT(file_ >= 0);
+  const Handle access(check(H5Pcreate(H5P_DATASET_ACCESS), "access"), H5Pclose);
+  check_status(H5Pset_chunk_cache(access, 7, 4 * kWrittenChunkRows * column.bytes(), 1.0), "cache");
+  return {check(H5Dopen2(file_, column.path.c_str(), access), column.path.c_str()), H5Dclose};
+}
+
+// A whole chunk before their first row is: by then a later flush than their own has made them safe.
+bool RestingColumns::chunks_are_due(std::size_t rows) const {
+  return stored_ < length_ && stored_ < rows + kStoredChunkRows;
+}
+
+void RestingColumns::store_due_chunks(std::size_t rows) {
+  const bool late = stored_ < rows;  // the run is longer than it was planned
+  const std::size_t to = stored_for(stored_ + kStoredStep, length_);
+  for (const Resting& resting : columns_) {
+    if (is_zero(resting.column)) continue;
+    const Handle dataset = opened(resting.column);
+    store_chunks(dataset, resting.column, stored_, to);
+    if (late) check_status(H5Dflush(dataset), resting.column.path.c_str());
   }
-  if (late) check_status(H5Dflush(resting.dataset), resting.column.path.c_str());
+  stored_ = to;
 }
 
 void RestingColumns::lengthen(std::size_t rows) {
   if (rows <= length_) return;
   length_ = length_for(rows, 0);
-  for (Resting& resting : columns_) {
+  for (const Resting& resting : columns_) {
     const hsize_t now[2] = {length_, resting.column.width};
-    check_status(H5Dset_extent(resting.dataset, now), resting.column.path.c_str());
+    check_status(H5Dset_extent(opened(resting.column), now), resting.column.path.c_str());
   }
 }
 
 std::uint64_t RestingColumns::room(std::size_t rows, std::size_t awake) const {
   constexpr std::uint64_t kColumnsInPart = 8;  // and more than there are
-  std::uint64_t bytes =
+  const std::uint64_t written =
       awake * ((rows / kWrittenChunkRows + 2) * kWrittenChunkRows * part_bytes_max_ + kColumnsInPart * kIndexPage);
-  for (const Resting& resting : columns_)
-    if (!resting.chunk.empty()) bytes += (rows / kStoredChunkRows + 2) * (resting.chunk.size() + kIndexPage / 8);
-  return bytes;
+  return written + (chunks_are_due(rows_ + rows) ? step_bytes_ : 0);
 }
 
 void RestingColumns::append(const std::byte* rows, const std::uint64_t* awake, std::size_t count) {
   if (columns_.empty() || count == 0) return;
   lengthen(rows_ + count);
+  while (chunks_are_due(rows_ + count)) store_due_chunks(rows_ + count);
   std::vector<std::uint64_t> ever(words_, 0);
   for (std::size_t i = 0; i < count * words_; ++i) ever[i % words_] |= awake[i];
-  const bool chunk_begins =
-      rows_ % kStoredChunkRows == 0 || rows_ / kStoredChunkRows != (rows_ + count) / kStoredChunkRows;
-  for (Resting& resting : columns_) {
-    if (chunk_begins) store_chunks(resting, rows_ + count);
+  for (Resting& resting : columns_)
     if (is_awake(ever.data(), resting.column.part)) write_awake(resting, rows, awake, count);
-  }
   rows_ += count;
 }
 
@@ -149,6 +155,10 @@ void RestingColumns::write_awake(Resting& resting, const std::byte* rows, const 
     last = i;
   }
   if (first == count) return;
+  if (resting.dataset < 0) {
+    resting.dataset = opened(column);
+    resting.type = Handle(check(H5Dget_type(resting.dataset), "type"), H5Tclose);
+  }
   const int rank = column.width == 1 ? 1 : 2;
   const hsize_t start[2] = {rows_ + first, 0};
   const hsize_t block[2] = {last - first + 1, column.width};

@@ -39,13 +39,14 @@ class RestingColumns {
 
   /// Creates the dataset of one of them.
   [[nodiscard]] hdf5::Handle create(hid_t file, const Column& column, hid_t type) const;
-  /// Opens all of them, under SWMR, and makes them ready for the first rows.
-  void open(hid_t file);
+  /// The file, open under SWMR, that rows go to. No dataset is opened before it has something to say: HDF5 looks with
+  /// every flush at all that are open, and at all that it knows of them.
+  void use(hid_t file) { file_ = file; }
 
   /// Bytes that the file may need for so many rows in which so many parts are awake.
   [[nodiscard]] std::uint64_t room(std::size_t rows, std::size_t awake) const;
   /// Appends `count` rows that lie one after the other; `awake` has words_per_row() words for each. Flushes what it
-  /// writes of them. @pre open
+  /// writes of them. @pre use()
   void append(const std::byte* rows, const std::uint64_t* awake, std::size_t count);
   /// Cuts all of them, in a closed file, to the rows that were appended.
   void cut(hid_t file) const;
@@ -57,19 +58,23 @@ class RestingColumns {
  private:
   struct Resting {
     Column column;
-    hdf5::Handle type, dataset;
-    std::vector<std::byte> chunk;  ///< at rest, compressed; empty: there is none to store
-    std::size_t chunks = 0;        ///< stored so far
+    hdf5::Handle type, dataset;  ///< none: it was never awake
   };
   std::size_t row_bytes_, words_ = 0;
   std::size_t part_bytes_ = 0, part_bytes_max_ = 0;  ///< of a row
   std::vector<Resting> columns_;
+  hid_t file_ = -1;  ///< not owned
   std::size_t rows_ = 0;
-  std::size_t length_;  ///< of the datasets
+  std::size_t length_;            ///< of the datasets
+  std::size_t stored_;            ///< rows for which chunks are stored
+  std::uint64_t step_bytes_ = 0;  ///< of the chunks that are stored at a time
   std::vector<std::byte> packed_;
 
+  static void store_chunks(hid_t dataset, const Column& column, std::size_t from, std::size_t to);
+  [[nodiscard]] hdf5::Handle opened(const Column& column) const;
+  [[nodiscard]] bool chunks_are_due(std::size_t rows) const;
+  void store_due_chunks(std::size_t rows);
   void lengthen(std::size_t rows);
-  void store_chunks(Resting& resting, std::size_t rows) const;
   void write_awake(Resting& resting, const std::byte* rows, const std::uint64_t* awake, std::size_t count);
 };
 

@@ -241,7 +241,7 @@ void RunWriter::start_swmr() {
   };
   for (const Column& column : schema_.columns())
     if (column.rest.empty()) columns_.push_back(open(column, kChunkRows));
-  resting_.open(file_);
+  resting_.use(file_);
   for (const Column& column : schema_.table()) table_.push_back(open(column, kChunkTableRows));
   events_.type = event_type();
   events_.dataset = open_growing(file_, "/events", kChunkEvents * sizeof(StoredEvent));
