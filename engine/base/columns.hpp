@@ -43,6 +43,11 @@ struct Column {
   /// Not empty: a column of the table. A u32 column of the same schema says how many rows each frame adds.
   std::string rows_in_frame = {};
   bool may_be_nan = false;  ///< f64: NaN where the value is not known. All others are finite, or the run has diverged
+  static constexpr std::size_t kNoPart = static_cast<std::size_t>(-1);
+  std::size_t part = kNoPart;  ///< of the state (Columns::begin_part); kNoPart: of none
+  /// Not empty: what the column says while its part is at rest, bytes() of it. A row that says so costs nothing: the
+  /// dataset is made to say it where nothing is written. @pre it is of a part; 256 bytes at most
+  std::vector<std::byte> rest = {};
   [[nodiscard]] std::size_t bytes() const { return size_of(dtype) * width; }
 };
 
@@ -111,7 +116,10 @@ class Columns {
                   std::move(units), std::move(description), 0,
                   std::move(names), std::move(due)};
     const bool is_state = column.path.starts_with("/state/");
-    if (is_state) add_to_run(column);
+    if (is_state) {
+      if (in_part_) column.part = parts_.size() - 1;
+      add_to_run(column);
+    }
     return (is_state ? state_ : other_).add(std::move(column), [get = std::move(get)](std::byte*& at) {
       Recorded<Value>::put(at, get());
     });

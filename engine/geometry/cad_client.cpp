@@ -21,7 +21,7 @@
 extern char** environ;
 
 namespace verisim {
-namespace {
+namespace cad_process {
 
 /// A descriptor that is closed with its owner.
 class Descriptor {
@@ -46,7 +46,7 @@ enum class Heard { answer, errors_too };  ///< of a process: its stdout, or its 
 /// written to without a SIGPIPE.
 class Process {
  public:
-  explicit Process(const std::string& program, Heard heard = Heard::answer) {
+  explicit Process(const std::string& program, Heard heard = Heard::answer, const char* argument = nullptr) {
     Descriptor child_in;
     Descriptor child_out;
     connect(to, child_in);
@@ -56,7 +56,7 @@ class Process {
     posix_spawn_file_actions_adddup2(&actions, child_in.get(), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, child_out.get(), STDOUT_FILENO);
     if (heard == Heard::errors_too) posix_spawn_file_actions_adddup2(&actions, child_out.get(), STDERR_FILENO);
-    char* const arguments[] = {const_cast<char*>(program.c_str()), nullptr};
+    char* const arguments[] = {const_cast<char*>(program.c_str()), const_cast<char*>(argument), nullptr};
     const int failure = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failure != 0) {
@@ -100,15 +100,26 @@ class Process {
   pid_t pid_ = -1;
 };
 
+}  // namespace cad_process
+
+namespace {
+
+using cad_process::Heard;
+using cad_process::Process;
+
+enum class Last { yes, no };  ///< of a process's requests
+
 /// Sends and receives at once, so that neither side can wait for the other for ever.
 class Exchange {
  public:
-  Exchange(Process& process, std::string_view request) : process_(process), unsent_(request) {}
+  Exchange(Process& process, std::string_view request, Last last = Last::yes)
+      : process_(process), unsent_(request), last_(last) {}
 
-  /// Everything that the process answers until it closes its end; nothing if the limit passes first.
+  /// Everything that the process answers until it closes its end, or until it has answered a request that is not the
+  /// last; nothing if the limit passes first.
   std::optional<std::string> run(double time_limit_s) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(time_limit_s);
-    while (!closed_) {
+    while (!closed_ && (last_ == Last::yes || !after_length(answer_))) {
       const std::chrono::duration<double, std::milli> left = end - std::chrono::steady_clock::now();
       if (left.count() <= 0) return std::nullopt;
       pollfd ready[2] = {{process_.from.get(), POLLIN, 0}, {unsent_.empty() ? -1 : process_.to.get(), POLLOUT, 0}};
@@ -127,7 +138,7 @@ class Exchange {
     if (n > 0) unsent_.remove_prefix(static_cast<std::size_t>(n));
     // A process that no longer reads has ended or is about to: its exit status tells why.
     if (n < 0 && errno != EAGAIN && errno != EINTR) unsent_ = {};
-    if (unsent_.empty()) shutdown(process_.to.get(), SHUT_WR);
+    if (unsent_.empty() && last_ == Last::yes) shutdown(process_.to.get(), SHUT_WR);
   }
 
   void receive_some() {
@@ -139,6 +150,7 @@ class Exchange {
 
   Process& process_;
   std::string_view unsent_;
+  Last last_;
   std::string answer_;
   bool closed_ = false;
 };
@@ -193,6 +205,29 @@ std::string advice_on(const std::string& library) {
 }
 
 }  // namespace
+
+struct CadSession::Running {
+  Process process{cad_program(), Heard::answer, kManyRequests};
+};
+
+CadSession::CadSession() = default;
+CadSession::~CadSession() = default;
+
+std::optional<Message> CadSession::ask(const Message& request) {
+  constexpr double kTimeLimit = 20;  // s; what takes longer is worth a process, and a limit, of its own
+  try {
+    if (!running_) running_ = std::make_unique<Running>();
+    const std::string bytes = with_length(encode(request));
+    const std::string answer = Exchange(running_->process, bytes, Last::no).run(kTimeLimit).value_or("");
+    if (const auto whole = after_length(answer)) {
+      Message message = decode(*whole);
+      if (!message.empty() && message.front().name != "error") return message;
+    }
+  } catch (const Error&) {  // no such program, no answer that makes sense: ask_cad() says so
+  }
+  running_.reset();
+  return std::nullopt;
+}
 
 std::string cad_program() {
   if (const char* named = std::getenv("VERISIM_CAD"); named != nullptr && *named != '\0') return named;

@@ -224,12 +224,14 @@ std::vector<Part> load_model(const std::string& path, const std::string& content
   return parts;
 }
 
-Part load_solid(const Solid& solid, const LoadOptions& options) {
+Part load_solid(const Solid& solid, const LoadOptions& options, CadSession* session) {
   check(solid);
   check_options("solid", options);
   std::vector<NamedArray> request = common_request("build", "solid", options);
   for (NamedArray& table : tables_of(solid)) request.push_back(std::move(table));
-  std::vector<Part> parts = parts_from(ask_cad({{"request", std::move(request)}}, "solid"));
+  const Message message = {{"request", std::move(request)}};
+  const std::optional<Message> answer = session != nullptr ? session->ask(message) : std::nullopt;
+  std::vector<Part> parts = parts_from(answer ? *answer : ask_cad(message, "solid"));
   VERISIM_ASSERT(parts.size() == 1);
   return std::move(parts.front());
 }

@@ -1,6 +1,6 @@
 // Reads models into parts: STEP, BREP and Solids through OpenCASCADE, STL, OBJ, PLY and glTF through assimp. Both run
 // in a child process (program verisim-cad beside this one), because neither is thread-safe, and some files crash the
-// one or make the other read for ever. Here that is bad input. About 20 ms for starting the program.
+// one or make the other read for ever. Here that is bad input. 20 to 60 ms for starting the program.
 //
 // Errors: Error(input) naming the file, what is wrong and what to do: empty, truncated, damaged, no solid or triangle
 // in it, NaN. A mesh that stays open, non-manifold or self-intersecting after repair loads: its part is not watertight
@@ -15,6 +15,8 @@
 #include "engine/geometry/solid.hpp"
 
 namespace verisim {
+
+class CadSession;
 
 struct LoadOptions {
   double scale = 0;       ///< metres per unit of a mesh file; 0: metres for meshes, the file's own unit for STEP/BREP
@@ -31,7 +33,8 @@ struct LoadOptions {
 [[nodiscard]] std::vector<Part> load_model(const std::string& path, const std::string& content,
                                            const LoadOptions& options);
 
-[[nodiscard]] Part load_solid(const Solid& solid, const LoadOptions& options);
+/// `session`: a verisim-cad that goes on with the next one (cad_client.hpp); null: one for this solid alone.
+[[nodiscard]] Part load_solid(const Solid& solid, const LoadOptions& options, CadSession* session = nullptr);
 
 /// Writes the solids as one STEP file (AP214, mm) through the same child process: scenes made of files the project
 /// wrote.

@@ -75,6 +75,20 @@ const NamedArray& find(const Group& group, std::string_view name) {
 
 }  // namespace
 
+std::string with_length(std::string_view bytes) {
+  std::string out;
+  put(out, bytes);
+  return out;
+}
+
+std::optional<std::string_view> after_length(std::string_view bytes) {
+  std::uint64_t length = 0;
+  if (bytes.size() < sizeof length) return std::nullopt;
+  std::memcpy(&length, bytes.data(), sizeof length);
+  bytes.remove_prefix(sizeof length);
+  return bytes.size() < length ? std::nullopt : std::optional(bytes.substr(0, length));
+}
+
 std::string encode(const Message& message) {
   std::string out(kMagic);
   put(out, message.size());

@@ -3,6 +3,7 @@
 // group "error" (see cad/main.cpp).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,13 @@ using Message = std::vector<Group>;
 
 /// Throws Error(input) if the bytes are not a whole message: never reads or allocates beyond them.
 [[nodiscard]] Message decode(std::string_view bytes);
+
+/// The argument with which the CAD program takes one request after the other until there are no more. Each, and each
+/// answer, then has its length before it (8 bytes).
+inline constexpr const char* kManyRequests = "many";
+[[nodiscard]] std::string with_length(std::string_view bytes);
+/// What follows the length; nothing if not all of it is there yet.
+[[nodiscard]] std::optional<std::string_view> after_length(std::string_view bytes);
 
 /// A text as a table of bytes, and the table called `name` as a text. Throws Error(input) if there is none.
 [[nodiscard]] NamedArray text_table(std::string name, std::string_view text);

@@ -177,12 +177,14 @@ class Listing {
 
   static void dataset(Checksum& sum, hid_t id, const std::string& path) {
     const Handle type(check(H5Dget_type(id), path.c_str()), H5Tclose);
-    const hdf5::Shape shape = hdf5::checked_shape(id, std::max<std::size_t>(1, H5Tget_size(type)));
+    const bool values = !is_computed_again(path);
+    const hdf5::Shape shape =
+        values ? hdf5::checked_shape(id, std::max<std::size_t>(1, H5Tget_size(type))) : hdf5::unchecked_shape(id);
     add_type(sum, type);
     for (const hsize_t n : shape) sum.add(n);
     attributes(sum, id);
     const bool in_heap = H5Tdetect_class(type, H5T_VLEN) > 0 || H5Tis_variable_str(type) > 0;
-    if (!is_computed_again(path) && !in_heap) add_values(sum, id, type, shape);
+    if (values && !in_heap) add_values(sum, id, type, shape);
   }
 };
 

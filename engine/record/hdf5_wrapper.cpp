@@ -249,12 +249,17 @@ Dtype dtype_of_stored(hid_t type) {
   throw Failure("a number type that this program does not write");
 }
 
-Shape checked_shape(hid_t dataset, std::size_t element_bytes) {
+Shape unchecked_shape(hid_t dataset) {
   const Handle space(check(H5Dget_space(dataset), "shape"), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 0 || rank > H5S_MAX_RANK) throw Failure("damaged shape");
   Shape shape(static_cast<std::size_t>(rank));
   check_status(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "shape");
+  return shape;
+}
+
+Shape checked_shape(hid_t dataset, std::size_t element_bytes) {
+  Shape shape = unchecked_shape(dataset);
   const hsize_t stored = H5Dget_storage_size(dataset) / element_bytes;
   hsize_t elements = 1;
   for (const hsize_t n : shape) {

@@ -91,6 +91,7 @@ using Shape = std::vector<hsize_t>;
 /// The Dtype of a stored number type. Throws Failure for anything else.
 [[nodiscard]] Dtype dtype_of_stored(hid_t type);
 
+[[nodiscard]] Shape unchecked_shape(hid_t dataset);
 /// Shape of a dataset, refused (Failure) if it claims more bytes than it stores: a damaged length must not allocate.
 [[nodiscard]] Shape checked_shape(hid_t dataset, std::size_t element_bytes);
 

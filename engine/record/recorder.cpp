@@ -52,20 +52,32 @@ struct Recorder::Implementation {
         events_buffer_(kEventRing),
         pairs_buffer_(kPairRing),
         path_(path),
-        writer_(path, schema, header) {
+        writer_(path, schema, header, options.frames_planned),
+        awake_words_(writer_.awake_words()),
+        awake_(ring_ * awake_words_),
+        ever_awake_(awake_words_),
+        zeroed_(schema.without_rest()) {
     if (table_row_bytes_ > 0) resize_table(std::max<std::size_t>(options.table_rows, ring_));
     thread_ = std::thread([this] { write_until_stopped(); });
   }
 
   ~Implementation() { stop(); }
 
-  std::span<std::byte> begin_row() {
+  std::span<std::byte> begin_row(std::span<const std::size_t> awake) {
     VERISIM_ASSERT(!row_open_);
     VERISIM_ASSERT(thread_.joinable());
     wait_for_room();
     row_open_ = true;
-    std::byte* row = &rows_buffer_[(rows_.mine() % ring_) * row_bytes_];
-    std::memset(row, 0, row_bytes_);
+    const std::size_t place = rows_.mine() % ring_;
+    std::byte* row = &rows_buffer_[place * row_bytes_];
+    for (const auto& [offset, bytes] : zeroed_) std::memset(row + offset, 0, bytes);
+    if (awake_words_ == 0) return {row, row_bytes_};
+    std::uint64_t* const words = &awake_[place * awake_words_];
+    std::fill_n(words, awake_words_, 0);
+    for (const std::size_t part : awake) {
+      VERISIM_ASSERT(part / kPartsInWord < awake_words_);
+      words[part / kPartsInWord] |= std::uint64_t{1} << part % kPartsInWord;
+    }
     return {row, row_bytes_};
   }
 
@@ -161,8 +173,12 @@ struct Recorder::Implementation {
   std::vector<StoredEvent> events_buffer_;  //  (kEventRing)
   std::vector<BodyPair> pairs_buffer_;      //  (kPairRing)
   const std::string path_;
-  RunWriter writer_;     ///< of the writer thread while that runs
-  std::string failure_;  ///< written before failed_ is set
+  RunWriter writer_;  ///< of the writer thread while that runs
+  const std::size_t awake_words_;
+  std::vector<std::uint64_t> awake_;       //  (ring_, awake_words_)
+  std::vector<std::uint64_t> ever_awake_;  ///< the writer's
+  const std::vector<ByteRange> zeroed_;    ///< of a row: what no part at rest has
+  std::string failure_;                    ///< written before failed_ is set
   Counters rows_, table_, events_, pairs_;
   // The loop's.
   alignas(64) std::atomic<std::uint32_t> bell_{0};  ///< the writer sleeps on it
@@ -286,14 +302,16 @@ struct Recorder::Implementation {
     const std::uint64_t pairs_to = is_batch ? std::max(pairs_from, ends_[(rows_to - 1) % ring_].pairs)
                                             : pairs_.put.load(std::memory_order_acquire);
     if (rows_from == rows_to && events_from == events_to && pairs_from == pairs_to) return false;
-    writer_.reserve(rows_to - rows_from, table_to - table_from, events_to - events_from, pairs_to - pairs_from);
+    writer_.reserve({rows_to - rows_from, table_to - table_from, events_to - events_from, pairs_to - pairs_from,
+                     count_awake(rows_from, rows_to)});
     in_pieces(pairs_from, pairs_to, kPairRing,
               [&](std::size_t place, std::size_t count) { writer_.append(&pairs_buffer_[place], count); });
     in_pieces(table_from, table_to, table_size_, [&](std::size_t place, std::size_t count) {
       writer_.append_to_table(&table_buffer_[place * table_row_bytes_], count);
     });
-    in_pieces(rows_from, rows_to, ring_,
-              [&](std::size_t place, std::size_t count) { writer_.append(&rows_buffer_[place * row_bytes_], count); });
+    in_pieces(rows_from, rows_to, ring_, [&](std::size_t place, std::size_t count) {
+      writer_.append(&rows_buffer_[place * row_bytes_], awake_.data() + place * awake_words_, count);
+    });
     in_pieces(events_from, events_to, kEventRing,
               [&](std::size_t place, std::size_t count) { writer_.append(&events_buffer_[place], count); });
     writer_.flush();
@@ -303,6 +321,18 @@ struct Recorder::Implementation {
     rows_.safe.store(rows_to, std::memory_order_release);
     tell_progress();
     return true;
+  }
+
+  /// Parts that are so in any of the rows.
+  std::size_t count_awake(std::uint64_t from, std::uint64_t to) {
+    std::fill(ever_awake_.begin(), ever_awake_.end(), 0);
+    in_pieces(from, to, ring_, [&](std::size_t place, std::size_t count) {
+      for (std::size_t i = 0; i < count * awake_words_; ++i)
+        ever_awake_[i % awake_words_] |= awake_[place * awake_words_ + i];
+    });
+    std::size_t parts = 0;
+    for (const std::uint64_t word : ever_awake_) parts += static_cast<std::size_t>(std::popcount(word));
+    return parts;
   }
 
   // A stretch of a ring is at most two stretches of memory.
@@ -327,8 +357,8 @@ Recorder::Recorder(const std::string& path, const Schema& schema, const RunHeade
     : implementation_(std::make_unique<Implementation>(path, schema, header, options)) {}
 Recorder::~Recorder() = default;
 
-std::span<std::byte> Recorder::begin_row() {
-  return implementation_->begin_row();
+std::span<std::byte> Recorder::begin_row(std::span<const std::size_t> awake) {
+  return implementation_->begin_row(awake);
 }
 void Recorder::add_table_rows(std::span<const std::byte> rows) {
   implementation_->add_table_rows(rows);

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/record/hdf5_wrapper.hpp"
+#include "engine/record/resting_columns.hpp"
 #include "engine/record/run_writer.hpp"
 
 namespace verisim {
@@ -28,7 +29,9 @@ StoredColumn read_column(hid_t dataset, const std::string& path) {
   Column& column = stored.column;
   column.path = path;
   column.dtype = number_type(dataset);
-  const hdf5::Shape shape = hdf5::checked_shape(dataset, size_of(column.dtype));
+  stored.rests = hdf5::has_attribute(dataset, kRests);
+  const hdf5::Shape shape =
+      stored.rests ? hdf5::unchecked_shape(dataset) : hdf5::checked_shape(dataset, size_of(column.dtype));
   if (shape.empty() || shape.size() > 2 || (shape.size() == 2 && shape[1] == 0))
     throw hdf5::Failure(path + ": wrong shape");
   stored.rows = shape[0];
@@ -148,9 +151,12 @@ StoredPairs read_pairs(hid_t file) {
 
 CompleteFrames::CompleteFrames(hid_t file, const std::vector<StoredColumn>& columns, const StoredPairs& pairs) {
   std::optional<std::size_t> frames;
-  for (const StoredColumn& stored : columns)
-    if (counter_of(stored.column).empty()) frames = std::min(frames.value_or(stored.rows), stored.rows);
+  for (const StoredColumn& stored : columns)  // what claims more than it stores says nothing of how many there are
+    if (counter_of(stored.column).empty() && !stored.rests)
+      frames = std::min(frames.value_or(stored.rows), stored.rows);
   count_ = frames.value_or(0);
+  for (const StoredColumn& stored : columns)
+    if (stored.rests) count_ = std::min(count_, stored.rows);
   for (const StoredColumn& stored : columns) {
     const Column& column = stored.column;
     if (!column.rows_in_frame.empty())

@@ -15,6 +15,7 @@ namespace verisim {
 struct StoredColumn {
   Column column;
   std::size_t rows = 0;
+  bool rests = false;  ///< it claims more than it stores (resting_columns.hpp), and may be longer than the run
 };
 
 /// All columns in the order of the schema that was written, the table's behind the row's. Throws hdf5::Failure if one

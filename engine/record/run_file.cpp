@@ -10,6 +10,7 @@
 #include "engine/record/heap_check.hpp"
 #include "engine/record/object_walk.hpp"
 #include "engine/record/recover.hpp"
+#include "engine/record/resting_columns.hpp"
 #include "engine/record/run_columns.hpp"
 #include "engine/record/run_inputs.hpp"
 #include "engine/record/run_writer.hpp"
@@ -118,6 +119,7 @@ std::vector<std::byte> RunFile::column(const Column& column) const {
     const std::size_t rows = implementation_->frames->rows_of(column);
     const hsize_t start[2] = {0, 0};
     const hsize_t block[2] = {rows, column.width};
+    if (hdf5::has_attribute(dataset, kRests)) check_resting(dataset, column, rows);
     std::vector<std::byte> values(rows * column.bytes());
     if (values.empty()) return values;
     const Handle memory(check(H5Screate_simple(column.width == 1 ? 1 : 2, block, nullptr), "shape"), H5Sclose);

@@ -21,6 +21,10 @@
 
 namespace verisim {
 
+struct ByteRange {
+  std::size_t offset, bytes;
+};
+
 /// The columns of a run: those of the row that every frame has, and those of the table, of which a frame has as many
 /// rows as pairs of bodies were near. Both are packed without padding in the order of adding; /state columns first, so
 /// that the state of a row is contiguous.
@@ -36,6 +40,10 @@ class Schema {
   [[nodiscard]] std::size_t table_row_bytes() const { return table_row_bytes_; }
   /// Length of the leading /state part of a row, without /state/hash.
   [[nodiscard]] std::size_t state_bytes() const { return state_bytes_; }
+  /// How many bytes of a row are of columns with a Column::rest.
+  [[nodiscard]] std::size_t rest_bytes() const { return rest_bytes_; }
+  /// Where in a row all other columns lie.
+  [[nodiscard]] std::vector<ByteRange> without_rest() const;
 
   /// The names that /state/pairs pairs; none: there is no such list.
   std::vector<std::string> bodies;
@@ -46,7 +54,7 @@ class Schema {
   std::vector<Column> columns_, table_;
   std::unordered_set<std::string> paths_;
   std::size_t row_bytes_ = 0, table_row_bytes_ = 0;
-  std::size_t state_bytes_ = 0;
+  std::size_t state_bytes_ = 0, rest_bytes_ = 0;
 };
 
 /// A row of /state/pairs: two of Schema::bodies.
@@ -92,9 +100,10 @@ inline constexpr const char* kEventsLost = "events lost";
 struct RecorderOptions {
   bool paced = false;  ///< never wait for the file: a full ring is Error(io)
   std::size_t frames_unflushed =
-      100;                     ///< free-running: a kill loses at most so many frames; the loop waits for the file
-  std::size_t ring_rows = 0;   ///< 0: chosen (256 free-running; 8 s of frames paced, at most 64 MB)
-  std::size_t table_rows = 0;  ///< of the table that fit into its ring at the start; 0: chosen. It grows if needed
+      100;                         ///< free-running: a kill loses at most so many frames; the loop waits for the file
+  std::size_t ring_rows = 0;       ///< 0: chosen (256 free-running; 8 s of frames paced, at most 64 MB)
+  std::size_t table_rows = 0;      ///< of the table that fit into its ring at the start; 0: chosen. It grows if needed
+  std::size_t frames_planned = 0;  ///< 0: not known. To be on with more or less costs a little once
 };
 
 /// Writes one run. Not copyable. All functions are for the one simulation thread.
@@ -110,7 +119,9 @@ class Recorder {
   /// @pre no row is open, close() has not been called
   /// The next row to fill, schema.row_bytes() long, zeroed. May wait (free-running only). No allocation.
   /// Throws Error(io) if the writer has failed (disk full …).
-  [[nodiscard]] std::span<std::byte> begin_row();
+  /// `awake`: the parts with a Column::rest that are not at rest in this row. What the row says of the others is not
+  /// looked at, nor zeroed.
+  [[nodiscard]] std::span<std::byte> begin_row(std::span<const std::size_t> awake = {});
   /// Copies the table's rows of the frame: schema.table_row_bytes() each. No allocation. May wait, free-running; paced,
   /// Error(io) if the disk is too far behind. @pre a row is open; whole rows, no more than make_room() promised
   void add_table_rows(std::span<const std::byte> rows);

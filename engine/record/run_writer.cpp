@@ -172,8 +172,8 @@ void RunWriter::guard(Work work) {
   }
 }
 
-RunWriter::RunWriter(const std::string& path, const Schema& schema, const RunHeader& header)
-    : path_(path), mark_(claim(path)), part_(path, ".part"), schema_(schema) {
+RunWriter::RunWriter(const std::string& path, const Schema& schema, const RunHeader& header, std::size_t rows_planned)
+    : path_(path), mark_(claim(path)), part_(path, ".part"), schema_(schema), resting_(schema, rows_planned) {
   if (is_live(path)) refuse_second_run(path);
   const hdf5::Session session;
   guard([&] {
@@ -197,7 +197,8 @@ void RunWriter::create(const RunHeader& header) {
   std::int64_t order = 0;
   const auto add = [&](const Column& column, hsize_t chunk_rows) {
     const Handle type = column_type(column);
-    const Handle dataset = growing_dataset(file, column.path, type, column.width, chunk_rows);
+    const Handle dataset = column.rest.empty() ? growing_dataset(file, column.path, type, column.width, chunk_rows)
+                                               : resting_.create(file, column, type);
     hdf5::write_attribute(dataset, "units", column.units);
     hdf5::write_attribute(dataset, "description", column.description);
     hdf5::write_attribute(dataset, "order", order++);
@@ -238,7 +239,9 @@ void RunWriter::start_swmr() {
     stored.due = due_offset(column);
     return stored;
   };
-  for (const Column& column : schema_.columns()) columns_.push_back(open(column, kChunkRows));
+  for (const Column& column : schema_.columns())
+    if (column.rest.empty()) columns_.push_back(open(column, kChunkRows));
+  resting_.use(file_);
   for (const Column& column : schema_.table()) table_.push_back(open(column, kChunkTableRows));
   events_.type = event_type();
   events_.dataset = open_growing(file_, "/events", kChunkEvents * sizeof(StoredEvent));
@@ -263,6 +266,7 @@ RunWriter::~RunWriter() {
     const hdf5::Session session;
     if (failed_) {
       for (Growing* growing : growing()) growing->dataset.release();
+      resting_.release();
       file_.release();
     }
     close_handles();
@@ -272,19 +276,20 @@ RunWriter::~RunWriter() {
 
 void RunWriter::close_handles() {
   for (Growing* growing : growing()) growing->dataset.reset();
+  resting_.close();
   if (file_ >= 0) check_status(H5Fclose(file_.release()), path_.c_str());
 }
 
-void RunWriter::reserve(std::size_t rows, std::size_t table_rows, std::size_t events, std::size_t pairs) {
+void RunWriter::reserve(const Amount& amount) {
   // A new chunk and a page of its index for every column, though most of them need none.
-  const std::uint64_t chunks = rows / kChunkRows + 2;
-  const std::uint64_t table_chunks = table_rows / kChunkTableRows + 2;
-  const std::uint64_t event_chunks = events / kChunkEvents + 2;
-  const std::uint64_t pair_chunks = pairs / kChunkPairs + 2;
+  const std::uint64_t chunks = amount.rows / kChunkRows + 2;
+  const std::uint64_t table_chunks = amount.table_rows / kChunkTableRows + 2;
+  const std::uint64_t event_chunks = amount.events / kChunkEvents + 2;
+  const std::uint64_t pair_chunks = amount.pairs / kChunkPairs + 2;
   const std::uint64_t bytes =
-      chunks * kChunkRows * schema_.row_bytes() + table_chunks * kChunkTableRows * schema_.table_row_bytes() +
-      event_chunks * kChunkEvents * sizeof(StoredEvent) + pair_chunks * kChunkPairs * 2 * name_length() +
-      (columns_.size() + table_.size() + 8) * kIndexBytes;
+      chunks * kChunkRows * (schema_.row_bytes() - schema_.rest_bytes()) + resting_.room(amount.rows, amount.awake) +
+      table_chunks * kChunkTableRows * schema_.table_row_bytes() + event_chunks * kChunkEvents * sizeof(StoredEvent) +
+      pair_chunks * kChunkPairs * 2 * name_length() + (columns_.size() + table_.size() + 8) * kIndexBytes;
   room_->ensure(bytes, kReserveStep);
 }
 
@@ -302,7 +307,11 @@ void RunWriter::append_packed(std::vector<Stored>& columns, const std::byte* row
   });
 }
 
-void RunWriter::append(const std::byte* rows, std::size_t count) {
+void RunWriter::append(const std::byte* rows, const std::uint64_t* awake, std::size_t count) {
+  {
+    const hdf5::Session session;
+    guard([&] { resting_.append(rows, awake, count); });  // before the others, so that no frame is without it
+  }
   append_packed(columns_, rows, count, schema_.row_bytes());
   has_rows_ = has_rows_ || count > 0;
 }
@@ -372,6 +381,7 @@ void RunWriter::close(const std::map<std::string, Attribute>& summary, const std
     {
       const Handle file(check(H5Fopen(finished.path().c_str(), H5F_ACC_RDWR, hdf5::file_access()), path_.c_str()),
                         H5Fclose);
+      resting_.cut(file);
       for (const auto& [name, value] : root) replace_attribute(file, name, value);
       const Handle group = hdf5::open_group(file, "/summary");
       for (const auto& [name, value] : summary) replace_attribute(group, name, value);

@@ -4,8 +4,9 @@
 // Layout beyond INTERFACES section 2. Attributes of "/": `columns`, their number. Attributes of a column: `order`, its
 // index in the schema, the table's behind the row's; `names` of values or components; `rows_where` if not every frame
 // adds a row, the path of the column that is not 0 in the frames that do; `rows_in_frame` if a frame adds any number of
-// rows, the path of the column that says how many. /inputs/files/N and /inputs/models/I/J are numbered; the names of
-// files, models and parts are attributes, because they may be equal or contain '/'.
+// rows, the path of the column that says how many; `rests` if rows may be left out (resting_columns.hpp).
+// /inputs/files/N and /inputs/models/I/J are numbered; the names of files, models and parts are attributes, because
+// they may be equal or contain '/'.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 
 #include "engine/record/file_replace.hpp"
 #include "engine/record/hdf5_wrapper.hpp"
+#include "engine/record/resting_columns.hpp"
 #include "engine/record/run_file.hpp"
 
 namespace verisim {
@@ -42,16 +44,23 @@ inline constexpr const char* kPairsPath = "/state/pairs";
 
 class RunWriter {
  public:
-  /// Creates PATH.part with header, inputs and empty columns, and starts SWMR.
-  RunWriter(const std::string& path, const Schema& schema, const RunHeader& header);
+  /// Creates PATH.part with header, inputs and empty columns, and starts SWMR. `rows_planned`: 0, not known.
+  RunWriter(const std::string& path, const Schema& schema, const RunHeader& header, std::size_t rows_planned);
   /// Without close(): flushed data stay, as after a kill; a file without a row is removed.
   ~RunWriter();
 
+  /// How much is to be appended.
+  struct Amount {
+    std::size_t rows, table_rows, events, pairs;
+    std::size_t awake;  ///< parts that are so in any of the rows
+  };
   /// Ensures disk space for an append and a flush. An Error from here leaves a consistent file.
-  void reserve(std::size_t rows, std::size_t table_rows, std::size_t events, std::size_t pairs);
+  void reserve(const Amount& amount);
+  /// Words for each row that say which parts are awake in it (resting_columns.hpp).
+  [[nodiscard]] std::size_t awake_words() const { return resting_.words_per_row(); }
   /// Appends `count` rows (of the table; events, pairs) that lie one after the other. About 4 us a column and 10 ns a
-  /// value. @pre they are there, if there are any
-  void append(const std::byte* rows, std::size_t count);
+  /// value; of parts at rest nothing. @pre they are there, if there are any
+  void append(const std::byte* rows, const std::uint64_t* awake, std::size_t count);
   void append_to_table(const std::byte* rows, std::size_t count);
   void append(const StoredEvent* events, std::size_t count);
   void append(const BodyPair* pairs, std::size_t count);
@@ -76,6 +85,7 @@ class RunWriter {
   bool has_rows_ = false;
   hdf5::Handle file_;
   std::vector<Stored> columns_, table_;
+  RestingColumns resting_;
   Growing events_, pairs_;
   std::unique_ptr<Reservation> room_;
   std::vector<std::byte> packed_;  ///< the rows' values of one column, or pairs as they are stored

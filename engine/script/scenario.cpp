@@ -37,6 +37,7 @@ Scenario::Scenario(const ScenarioOptions& options, Inputs& inputs)
     for (const std::string& notice : choice->notices) implementation_->state.notice(notice);
     failure = run_script(implementation_->state, inputs, options.instruction_limit);
   }
+  inputs.end_of_scene();
   if (failure) throw Error(failure->kind, failure->text);
   implementation_->state.finish();
 }

@@ -57,12 +57,13 @@ struct OpenRecorder {
 OpenRecorder open_recorder(const Session& session, const RecordOptions& options, const Schema& schema) {
   RecorderOptions recording;
   recording.paced = options.paced;
+  recording.frames_planned = session.simulation->frames_planned();
   recording.frames_unflushed = static_cast<std::size_t>(std::max(1.0, 0.1 / session.simulation->dt()));
   for (int n = 1;; ++n) {
     const std::string name = nth_name(options.file, n);
     try {
       const std::string file = check_output({name, OutputKind::run, options.force, {}}, session.inputs->opened());
-      check_room(file, session, schema.row_bytes());
+      check_room(file, session, schema.row_bytes() - schema.rest_bytes());
       return {name, std::make_unique<Recorder>(file, schema, header_of(session, options.embed), recording)};
     } catch (const BeingWritten&) {
       if (!options.another_name) throw;

@@ -60,9 +60,9 @@ class RowSink {
   }
   void take() {
     if (recorder_ == nullptr) return;
-    const std::span<std::byte> row = recorder_->begin_row();
+    const std::span<std::byte> row = recorder_->begin_row(simulation_.awake());
     VERISIM_ASSERT(row.size() == row_bytes_);
-    simulation_.write_row(row.data());
+    simulation_.write_awake(row.data());
     timing_.put_other(row.data() + row.size() - timing_.other_bytes());
     recorder_->add_table_rows(simulation_.table_rows());
     recorder_->end_row();

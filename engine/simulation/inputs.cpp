@@ -152,7 +152,10 @@ const Part& Inputs::solid(const Solid& solid, const LoadOptions& options) {
   if (known != parts_.end()) return known->second.front();
   if (!live_)
     fail(ErrorKind::input, "{}: is not among the run file's solids; the run was recorded without it", solid.text());
-  const auto make = [&] { return std::vector<Part>{load_solid(solid, options)}; };
+  const auto make = [&] {
+    if (!cad_) cad_ = std::make_shared<CadSession>();
+    return std::vector<Part>{load_solid(solid, options, cad_.get())};
+  };
   return remember(key, prepared(key, make)).front();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/user_file.hpp"
+#include "engine/geometry/cad_client.hpp"
 #include "engine/geometry/loader.hpp"
 #include "engine/record/prepared_store.hpp"
 #include "engine/record/run_file.hpp"
@@ -35,6 +36,8 @@ class Inputs {
   /// Parts of a model file, a Solid. Loaded once per (name, options).
   const std::vector<Part>& model(const std::string& name, const LoadOptions& options);
   const Part& solid(const Solid& solid, const LoadOptions& options);
+  /// The scene is built: ends the program that made its solids. Another solid starts one anew.
+  void end_of_scene() { cad_.reset(); }
 
   /// What prepares from these inputs may take from there what was prepared before; null: there is none.
   [[nodiscard]] const std::shared_ptr<PreparedStore>& store() const { return store_; }
@@ -50,6 +53,7 @@ class Inputs {
   std::string folder_;
   std::vector<std::string> named_;  ///< absolute
   std::shared_ptr<PreparedStore> store_;
+  std::shared_ptr<CadSession> cad_;  ///< null until a solid is to be made
   std::vector<FileIdentity> opened_;
   std::vector<std::string> order_;
   std::map<std::string, std::string> contents_;

@@ -102,11 +102,28 @@ Columns declare(const World& world, const Stages& stages, const FrameCost& cost)
   return columns;
 }
 
-Schema schema_of(const World& world, const Columns& columns) {
+std::vector<std::byte> rest_of(const Columns& columns) {
+  std::vector<std::byte> state(columns.state_bytes());
+  columns.put_state(state.data());
+  return state;
+}
+
+/// The columns of a body that cannot move say what they say at rest in every row, but for the force when it is touched.
+Column with_rest(const World& world, Column column, const std::byte* rest) {
+  if (column.part != Column::kNoPart && !world.bodies[column.part].can_move)
+    column.rest.assign(rest, rest + column.bytes());
+  return column;
+}
+
+Schema schema_of(const World& world, const Columns& columns, const std::vector<std::byte>& rest) {
   Schema schema;
   for (const Body& body : world.bodies) schema.bodies.push_back(body.name);
   schema.pairs_in_frame = "/cost/pairs_met";
-  for (const Column& column : columns.state()) schema.add(column);
+  std::size_t at = 0;
+  for (const Column& column : columns.state()) {
+    schema.add(with_rest(world, column, &rest[at]));
+    at += column.bytes();
+  }
   schema.add(
       {"/state/hash",
        Dtype::u64,
@@ -129,9 +146,13 @@ Recording::Recording(const World& world, const Stages& stages, const FrameCost& 
       state_numbers_(columns_.state()),
       other_numbers_(columns_.other()),
       table_numbers_(columns_.table()),
-      schema_(schema_of(world, columns_)),
+      rest_(rest_of(columns_)),
+      schema_(schema_of(world, columns_, rest_)),
+      without_rest_(schema_.without_rest()),
       row_(schema_.row_bytes(), std::byte{0}),
+      is_awake_(columns_.part_count(), false),
       body_hashes_(columns_.part_count(), 0) {
+  awake_.reserve(columns_.part_count());
   VERISIM_ASSERT(schema_.state_bytes() == columns_.state_bytes());
   VERISIM_ASSERT(schema_.row_bytes() == columns_.state_bytes() + sizeof hash_ + columns_.other_bytes());
   VERISIM_ASSERT(schema_.table_row_bytes() == columns_.table_bytes());
@@ -143,10 +164,27 @@ void Recording::take(const World& world, const Stages& stages, FrameCost& cost) 
   std::byte* at = row_.data() + columns_.state_bytes();
   columns_.put_state(row_.data(), world.busy);
   columns_.put_other(at + sizeof hash_);
+  list_awake(world);
   check_finite(world);
   add_up(world, stages, cost);
   update_hash(world.busy);
   put_value(at, hash_);
+}
+
+void Recording::list_awake(const World& world) {
+  bool changed = false;
+  for (const std::size_t i : world.busy) {
+    if (world.bodies[i].can_move) continue;
+    columns_.of_part(i, [&](std::size_t offset, std::size_t bytes) {
+      const bool awake = std::memcmp(&row_[offset], &rest_[offset], bytes) != 0;
+      changed = changed || awake != is_awake_[i];
+      is_awake_[i] = awake;
+    });
+  }
+  if (!changed) return;
+  awake_.clear();
+  for (std::size_t i = 0; i < is_awake_.size(); ++i)
+    if (is_awake_[i]) awake_.push_back(i);
 }
 
 /// @param written  the bodies whose values are new in this row

@@ -31,6 +31,14 @@ class Recording {
 
   [[nodiscard]] const Schema& schema() const { return schema_; }
   [[nodiscard]] const std::vector<std::byte>& row() const { return row_; }
+  /// Bodies that cannot move and of which the row says something else than at rest, ascending: those that are touched.
+  [[nodiscard]] std::span<const std::size_t> awake() const { return awake_; }
+  /// Calls f(offset, bytes) for all of the row but what bodies at rest have in it.
+  template <typename F>
+  void each_awake(const F& f) const {
+    for (const ByteRange& range : without_rest_) f(range.offset, range.bytes);
+    for (const std::size_t i : awake_) columns_.of_part(i, f);
+  }
   [[nodiscard]] std::span<const std::byte> table_rows() const { return table_; }
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
   [[nodiscard]] const Totals& totals() const { return totals_; }
@@ -39,14 +47,19 @@ class Recording {
  private:
   void take_links(const World& world, const Stages& stages);
   void update_hash(std::span<const std::size_t> written);
+  void list_awake(const World& world);
   void check_finite(const World& world) const;
   void add_up(const World& world, const Stages& stages, const FrameCost& cost);
   void add_up_answers(const World& world, const Stages& stages);
 
   Columns columns_;
   FiniteNumbers state_numbers_, other_numbers_, table_numbers_;
+  std::vector<std::byte> rest_;  ///< state of a row in which nothing has happened yet
   Schema schema_;
+  std::vector<ByteRange> without_rest_;
   std::vector<std::byte> row_, table_;
+  std::vector<bool> is_awake_;  ///< by body
+  std::vector<std::size_t> awake_;
   std::vector<std::size_t> recorded_links_;  ///< whose rows the table holds
   std::vector<std::uint64_t> body_hashes_;
   std::uint64_t hash_ = 0;

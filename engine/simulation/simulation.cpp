@@ -211,6 +211,17 @@ void Simulation::write_row(std::byte* row) const {
   std::memcpy(row, from.data(), from.size());
 }
 
+std::span<const std::size_t> Simulation::awake() const {
+  return implementation_->recording.awake();
+}
+
+void Simulation::write_awake(std::byte* row) const {
+  VERISIM_ASSERT(row != nullptr);
+  const std::byte* const from = implementation_->recording.row().data();
+  implementation_->recording.each_awake(
+      [&](std::size_t offset, std::size_t bytes) { std::memcpy(row + offset, from + offset, bytes); });
+}
+
 std::span<const std::byte> Simulation::table_rows() const {
   return implementation_->recording.table_rows();
 }

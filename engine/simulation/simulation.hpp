@@ -99,6 +99,9 @@ class Simulation {
   /// The columns of /state and /cost of this scene, and the last frame's values written into a row of that schema.
   void describe(Schema& schema) const;
   void write_row(std::byte* row) const;
+  /// For a recorder: which parts are not at rest (Column::rest), and write_row() without what all others have in it.
+  [[nodiscard]] std::span<const std::size_t> awake() const;
+  void write_awake(std::byte* row) const;
   /// The last frame's rows of /state/links, one behind the other.
   [[nodiscard]] std::span<const std::byte> table_rows() const;
   /// Pairs of bodies that have come near so far: the rows of /state/pairs.

@@ -21,6 +21,82 @@ end
 """
 
 
+FAR = """
+local p = params{ far = 0, same = false, duration = 0.5 }
+defineSimulationParameters{ allBodiesAreDynamic = true, gravity = {0, 0, -9.81}, duration = p.duration, hybrid = "off" }
+addObject{ name = "floor", fixed = true, voxelsize = 0.005, position = {0, 0, -0.01}, Solid.box{0.3, 0.1, 0.02} }
+for i = -1, 1 do
+  addObject{ name = "box" .. i, density = 1000, voxelsize = 0.005, position = {i * 0.08, 0, 0.03}, Solid.box{0.02, 0.02, 0.02} }
+end
+for i = 1, p.far do
+  local size = p.same and 0.02 or 0.02 + 0.0001 * i
+  addObject{ name = "far" .. i, fixed = true, voxelsize = 0.005, position = {i * 0.1, 10, -3}, Solid.box{size, size, size} }
+end
+"""
+
+
+class Far(ProgramTest):
+    """A scene of 200 bodies of which 3 move costs what 3 cost: what is fixed and touched by nobody has no rows to write."""
+
+    def far(self, far, **parameters):
+        sets = [word for key, value in parameters.items() for word in ("--set", f"{key}={value}")]
+        run_file = self.path(f"{far} {sorted(parameters.items())}.h5")
+        return self.run_json("run", self.write("far.lua", FAR), "-o", run_file, "--set", f"far={far}", *sets), run_file
+
+    def test_what_is_fixed_has_no_rows_on_disk_and_all_of_them_to_read(self):
+        summary, run_file = self.far(197, same="true")
+        with h5py.File(run_file) as f:
+            frames = len(f["state/time"])
+            self.assertEqual(frames, summary["frames"])
+            for name, body in f["state/body"].items():
+                pose, twist, force = body["pose"], body["twist"], body["force"]
+                self.assertEqual((pose.shape, twist.shape, force.shape), ((frames, 7), (frames, 6), (frames, 6)))
+                self.assertEqual((pose.dtype, twist.dtype, force.dtype), (float, float, float))
+                if name.startswith("box"):
+                    continue
+                self.assertTrue((pose[()] == pose[0]).all() and not twist[()].any(), name)
+                self.assertEqual(twist.id.get_num_chunks(), 0, name)
+                self.assertLess(pose.id.get_storage_size(), 4096, name)
+                if name.startswith("far"):
+                    self.assertEqual(list(pose[frames - 1]), [int(name[3:]) * 0.1, 10, -3, 0, 0, 0, 1])
+                    self.assertEqual(force.id.get_num_chunks(), 0, name)
+                    self.assertFalse(force[()].any(), name)
+            floor = f["state/body/floor/force"][()]
+            self.assertFalse(floor[0].any())
+            self.assertAlmostEqual(floor[-1, 2], -3 * 0.008 * 9.81, delta=1e-3)
+        self.succeed("replay", run_file, "--verify", "--measure")
+
+    def test_a_frame_more_takes_no_byte_more_for_what_is_fixed(self):
+        def bytes_of(far, duration):
+            return os.path.getsize(self.far(far, same="true", duration=duration)[1])
+        few = bytes_of(0, 4) - bytes_of(0, 1)
+        many = bytes_of(197, 4) - bytes_of(197, 1)
+        self.assertLess(many - few, 3000 * 197, "one byte a row; they have 152")
+
+    def test_changed_on_disk_it_does_not_pass_verify(self):
+        _, run_file = self.far(2, same="true", duration=0.05)
+        for name, value in (("force", 1e-3), ("twist", 1e-9), ("pose", 7)):
+            with h5py.File(run_file, "r+") as f:
+                before = f[f"state/body/far2/{name}"][20, 1]
+                f[f"state/body/far2/{name}"][20, 1] = value
+            self.refuse(1, ["frame 20", f"/state/body/far2/{name}[1]"], "replay", run_file, "--verify")
+            with h5py.File(run_file, "r+") as f:
+                f[f"state/body/far2/{name}"][20, 1] = before
+        self.succeed("replay", run_file, "--verify")
+
+    def test_one_program_makes_all_solids(self):
+        log, cad = self.path("log"), self.path("cad")
+        with open(cad, "w") as f:
+            f.write(f"#!/bin/sh\necho started >> '{log}'\nexec '{os.path.join(os.path.dirname(VERISIM), 'verisim-cad')}' \"$@\"\n")
+        os.chmod(cad, 0o755)
+        environment = {**os.environ, "VERISIM_CAD": cad}
+        done = self.run_program("run", self.write("far.lua", FAR), "-o", self.path("run.h5"), "--set", "far=30", "--set",
+                                "duration=0.01", "--no-cache", env=environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(log) as f:
+            self.assertEqual(f.read(), "started\n")
+
+
 class ManyBodies(ProgramTest):
     def grid(self, **parameters):
         """Summary and run file of a grid of boxes."""

@@ -134,6 +134,60 @@ TEST(AskCad, TellsWantOfMemoryFromALibraryThatIsNotInstalled) {
             "x.step: verisim-cad cannot be loaded (symbol lookup error: f); build or install it again");
 }
 
+Message request_of(const Solid& solid) {
+  Message message = {{"request",
+                      {text_table("operation", "build"), text_table("path", "solid"), number_table("scale", 1),
+                       number_table("deflection", 0), number_table("angular_deflection", 0.1)}}};
+  for (NamedArray& table : tables_of(solid)) message.front().tables.push_back(std::move(table));
+  return message;
+}
+
+Solid bored(double radius) {
+  using testing::make;
+  return make(Solid::Kind::difference, make(Solid::Kind::box, {0.2, 0.1, 0.1}),
+              make(Solid::Kind::cylinder, {radius, 0.2}));
+}
+
+TEST(CadSession, AnswersAsAProgramForEachRequestDoes) {
+  const std::size_t before = open_descriptors();
+  {
+    CadSession session;
+    for (int i = 1; i <= 6; ++i) {
+      const Message request = request_of(bored(0.006 * i));
+      const std::optional<Message> answer = session.ask(request);
+      ASSERT_TRUE(answer.has_value()) << i;
+      EXPECT_EQ(encode(*answer), encode(ask_cad(request, "solid"))) << i;
+      EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), 0) << "it stays";
+    }
+  }
+  expect_no_child_left();
+  EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST(CadSession, IsStartedAnewAfterARequestThatItCouldNotAnswer) {
+  CadSession session;
+  EXPECT_FALSE(session.ask(request("crash")).has_value());
+  EXPECT_FALSE(session.ask(request_of(bored(0.5))).has_value());  // nothing is left of the box
+  EXPECT_TRUE(session.ask(request_of(bored(0.01))).has_value());
+  EXPECT_FALSE(session.ask(request("what?")).has_value());
+  expect_no_child_left();
+  for (const char* other : {"/bin/true", "/bin/cat", "/usr/bin/env", "/nowhere/verisim-cad"}) {
+    const Program program(other);
+    EXPECT_FALSE(session.ask(request_of(bored(0.01))).has_value()) << other;
+    expect_no_child_left();
+  }
+}
+
+TEST(CadSession, LeavesErrorsAsTheyAre) {
+  CadSession session;
+  const auto load = [&](CadSession* in) {
+    return error_of(ErrorKind::input, [&] { static_cast<void>(load_solid(bored(0.5), {}, in)); });
+  };
+  EXPECT_EQ(load(&session), load(nullptr));
+  EXPECT_NE(load(&session).find("nothing is left of the solid"), std::string::npos);
+  expect_no_child_left();
+}
+
 TEST(AskCad, LeavesNoDescriptorOpen) {
   const std::size_t before = open_descriptors();
   for (int i = 0; i < 3; ++i) EXPECT_THROW(static_cast<void>(ask_cad(request("crash"), "x")), Error);

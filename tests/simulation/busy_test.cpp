@@ -84,6 +84,17 @@ class Rows {
     hash = hash_bytes(hashes.data(), 8 * hashes.size(), hash);
     return hash_bytes(simulation_.table_rows().data(), simulation_.table_rows().size(), hash);
   }
+  /// The row as a recorder has it: of what is not awake it knows what that says at rest. Returns how many are awake.
+  std::size_t expect_that_a_recorder_has_all_of_it() {
+    row_.resize(schema_.row_bytes());
+    simulation_.write_row(row_.data());
+    std::vector<std::byte> recorded(row_.size());
+    for (const Column& column : schema_.columns())
+      std::copy(column.rest.begin(), column.rest.end(), recorded.begin() + static_cast<std::ptrdiff_t>(column.offset));
+    simulation_.write_awake(recorded.data());
+    EXPECT_TRUE(recorded == row_);
+    return simulation_.awake().size();
+  }
   /// Of the table's rows of this frame.
   [[nodiscard]] Pairs pairs() const {
     Pairs pairs;
@@ -188,7 +199,7 @@ TEST(Busy, BodiesAreRecordedAsTheyAreAndPairsWhereTheyMeet) {
   Simulation simulation(boxes_side_by_side(), {});
   Script script(simulation, scene);
   Rows rows(simulation);
-  std::size_t met = 0, touched = 0;
+  std::size_t met = 0, touched = 0, awake = 0, asleep = 0;
   for (int frame = 0; frame < 1500; ++frame) {
     if (frame % 20 == 10) script.act();
     simulation.prepare();
@@ -205,10 +216,13 @@ TEST(Busy, BodiesAreRecordedAsTheyAreAndPairsWhereTheyMeet) {
       ASSERT_TRUE(possible.contains(pair)) << pair.first << " " << pair.second << " in frame " << frame;
     met += found.size();
     touched += simulation.cost().contacts > 0 ? 1 : 0;
+    ++(rows.expect_that_a_recorder_has_all_of_it() > 0 ? awake : asleep);
     ASSERT_NO_FATAL_FAILURE(expect_true_rows(simulation, rows, found, script.held())) << "frame " << frame;
   }
   EXPECT_GT(met, 1500U);
   EXPECT_GT(touched, 500U);
+  EXPECT_GT(awake, 50U);
+  EXPECT_GT(asleep, 50U);
 }
 
 }  // namespace

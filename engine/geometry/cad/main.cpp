@@ -1,12 +1,14 @@
 // verisim-cad: the only program that links the CAD kernel and the readers of mesh files. verisim starts it for one
-// request, so that a crash of theirs (each has some) ends this process and not a simulation.
+// request, or with the argument "many" for all solids of a scene, so that a crash of theirs (each has some) ends this
+// process and not a simulation.
 //
 // stdin: a message (engine/geometry/message.hpp) with one group "request", whose "operation" is
 //   step, brep, mesh   content, path, scale, deflection, angular_deflection   -> one group per part
 //   build        the solid's tables, path, deflection, angular_deflection -> one group
 //   write_step   further groups, one solid each, named as in the file   -> a group "file" with its content
 //   crash, hang  for the tests of what happens then
-// stdout: the answer, or a group "error" with one line. Exit code: 0, or that of the error.
+// stdout: the answer, or a group "error" with one line. Exit code: 0, or that of the error. With "many", messages have
+// their lengths before them (with_length), and an error is the last answer.
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -17,6 +19,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <iterator>
+#include <optional>
 
 #include "engine/base/standard_streams.hpp"
 #include "engine/geometry/cad/kernel.hpp"
@@ -119,6 +122,15 @@ std::pair<std::string, int> answer(const std::string& request) {
   }
 }
 
+/// The next request; nothing if there is none.
+std::optional<std::string> next_request() {
+  std::uint64_t length = 0;
+  if (!std::cin.read(reinterpret_cast<char*>(&length), sizeof length)) return std::nullopt;
+  std::string request(length, '\0');
+  if (!std::cin.read(request.data(), static_cast<std::streamsize>(length))) return std::nullopt;
+  return request;
+}
+
 bool write_all(int descriptor, const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
@@ -126,6 +138,22 @@ bool write_all(int descriptor, const std::string& bytes) {
     done += static_cast<std::size_t>(n);
   }
   return true;
+}
+
+/// Answers one request after the other. Returns the exit code.
+int answer_many(int out) {
+  while (const std::optional<std::string> request = next_request()) {
+    const auto [bytes, code] = answer(*request);
+    if (!write_all(out, with_length(bytes))) return static_cast<int>(ErrorKind::io);
+    if (code != 0) return code;
+  }
+  return 0;
+}
+
+int answer_one(int out) {
+  const std::string request(std::istreambuf_iterator<char>(std::cin), {});
+  const auto [bytes, code] = answer(request);
+  return write_all(out, bytes) ? code : static_cast<int>(ErrorKind::io);
 }
 
 void limit_harm() {
@@ -140,16 +168,15 @@ void limit_harm() {
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   occupy_standard_streams();
   limit_harm();
   // What the kernel prints must not get into the answer.
   const int out = dup(STDOUT_FILENO);
   dup2(STDERR_FILENO, STDOUT_FILENO);
   cad::initialize();
-  const std::string request(std::istreambuf_iterator<char>(std::cin), {});
-  const auto [bytes, code] = answer(request);
-  const bool written = write_all(out, bytes);
+  const bool many = count == 2 && std::string_view(arguments[1]) == kManyRequests;
+  const int code = many ? answer_many(out) : answer_one(out);
   // The kernel's static objects are not destroyed: some of its versions crash there, after the answer was good.
-  std::_Exit(written ? code : static_cast<int>(ErrorKind::io));
+  std::_Exit(code);
 }
