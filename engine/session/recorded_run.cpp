@@ -12,7 +12,6 @@
 #include "engine/session/memory_use.hpp"
 #include "engine/session/progress_line.hpp"
 #include "engine/session/realtime_priority.hpp"
-#include "engine/session/stop_watch.hpp"
 #include "engine/session/warnings.hpp"
 
 namespace verisim {
@@ -134,11 +133,8 @@ RecordedRun record_run(Session& session, const RecordOptions& options) {
     const std::string fallback = fallback_warning(run.figures);
     if (!fallback.empty()) print_warnings({fallback});
   }
-  if (recorder && run.loop.end != LoopEnd::io_failed) {
-    const StopWatch closing;
+  if (recorder && run.loop.end != LoopEnd::io_failed)
     recorder->close(to_attributes(run.figures), {{"state_hash", run.figures.state_hash}});
-    run.figures.wall_s += closing.seconds();  // the file cannot say how long its own closing takes
-  }
   if (thrown) std::rethrow_exception(thrown);
   return run;
 }
