@@ -16,7 +16,7 @@ struct ContactRow {
   double gap;            ///< m, < 0: the bodies overlap by that much along the normal
   double stiffness;      ///< N/m
   std::uint32_t source;  ///< identifies body, sample and face or edge; the same in the next frame
-  double curving = 0;  ///< m, <= 0: by so much the gap ends below its linear change, if the bodies move on as they did
+  double curving = 0;    ///< m: by so much the gap ends above its linear change, if the bodies move on as they did
 };
 
 /// Rows up to a capacity. Rows beyond it are counted and left out.

@@ -343,7 +343,7 @@ int ConvexStep::solve(double dt, double threshold) {
   VERISIM_ASSERT(is_positive(dt));
   VERISIM_ASSERT(is_positive(threshold));
   finished_ = true;
-  hit_ = late_ = false;
+  hit_ = late_ = parts_ = false;
   blocks_needed_ = 0;
   unknowns_.clear();
   if (bodies_.empty()) return 0;
@@ -355,16 +355,19 @@ int ConvexStep::solve(double dt, double threshold) {
     choose_start(dt);
     iterations += minimize(dt);
   }
+  for (std::size_t r = 0; r < rows_.size(); ++r) rests_[r].force = -rows_[r].k * rows_[r].pressed(rows_[r].z);
+  if (parts_) limit_work(energy_of_pushing_out());
+  if (parts_) evaluate_gaps(dt);
   for (Body& body : bodies_) body.during = body.u;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const Row& row = rows_[r];
-    rests_[r].force = rests_[r].before_rebound = -row.k * row.pressed(row.z);
-    rests_[r].end_gap = row.g + (row.z - row.g) / rests_[r].stretch;
+    rests_[r].before_rebound = rests_[r].force;
+    rests_[r].end_gap = rows_[r].g + (rows_[r].z - rows_[r].g) / rests_[r].stretch;
   }
   if (hit_ && begin_rebound(dt)) {
     iterations += minimize(dt);
     end_rebound();
   }
+  if (parts_) limit_work(0);
   sum_up(dt);
   return iterations;
 }

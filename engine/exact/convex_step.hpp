@@ -236,6 +236,9 @@ class ConvexStep {
   [[nodiscard]] double damping_time(const Run& run, double dt) const;
   void damp(const Run& run, double dt, double tau);
   [[nodiscard]] double share_of_curving() const;
+  [[nodiscard]] double energy_of_pushing_out() const;
+  void limit_work(double most);
+  [[nodiscard]] double held() const;
   void scale_curving(double share);
   [[nodiscard]] bool begin_rebound(double dt);
   void move_rows(double dt);
@@ -272,6 +275,7 @@ class ConvexStep {
   std::size_t blocks_needed_ = 0;
   std::size_t left_out_ = 0;
   bool finished_ = true, hit_ = false, late_ = false;
+  bool parts_ = false;      ///< does any row say that its bodies began inside of each other?
   double cost_ = 0;         ///< at the start of the search direction
   LineValue line_begin_{};  ///< of all that is one parabola along the direction, for t from 0 to 1, at t = 0
   /// The others: rows that begin or cease to act somewhere between. Their numbers.

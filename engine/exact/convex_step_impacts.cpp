@@ -24,6 +24,13 @@ constexpr double kDamped = 4;
 /// Of the kinetic energy at the start: what begins to slide along a curve gains (v dt / 2 rho)^2 once.
 constexpr double kTurnsOnce = 1e-2;
 
+/// s >= 0 with quadratic s^2 + linear s = value, without loss of digits. @pre value >= 0; linear or quadratic is above
+/// 0
+double positive_root(double quadratic, double linear, double value) {
+  const double root = std::sqrt(linear * linear + 4 * quadratic * value);
+  return linear > 0 ? 2 * value / (linear + root) : (root - linear) / (2 * quadratic);
+}
+
 }  // namespace
 
 /// Finds the rows that are hit if they close within the step, and makes them rigid; those that are late; and damps
@@ -81,6 +88,7 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold, double t
     const double approach = -rate(r, &Body::before);
     const double sudden = overlap - known - std::max(0.0, approach * dt);
     rest.began_inside = sudden > kImpossible;
+    parts_ = parts_ || rest.began_inside;
     if (sudden > (watches ? 0 : kImpossible)) {
       rest.late = late_ = true;
       rest.asked = 0;
@@ -93,9 +101,57 @@ void ConvexStep::note_hits(const Run& run, double dt, double threshold, double t
   }
 }
 
+/// J that late rows may give the bodies for this step: they move apart with kPushOut, and no faster.
+double ConvexStep::energy_of_pushing_out() const {
+  double most = 0, kinetic = 0;
+  for (const Body& body : bodies_) {
+    most += 0.5 * body.M(0, 0) * kPushOut * kPushOut;
+    kinetic += 0.5 * body.before.dot(body.M * body.before);
+  }
+  return std::max(0.0, most - kinetic);
+}
+
+/// Takes a smaller share of all impulses where they do more work than the springs held that were pressed at the start,
+/// by more than kTurnsOnce and `most`. Bodies that were put inside of each other may have no motion that parts them
+/// all: late rows that work against each other, on short levers, would throw them.
+void ConvexStep::limit_work(double most) {
+  double linear = 0, quadratic = 0;  // work of the share s of the impulses: s linear + s^2 quadratic
+  double left = most;
+  for (const Body& body : bodies_) {
+    const Vector6d change = body.u - body.u0;
+    const Vector6d impulse = body.M * change;
+    linear += impulse.dot(body.u0);
+    quadratic += 0.5 * impulse.dot(change);
+    left += kTurnsOnce * 0.5 * body.before.dot(body.M * body.before);
+  }
+  left += held();
+  if (!(linear + quadratic > left)) return;
+  const double share = positive_root(quadratic, linear, left);
+  for (Body& body : bodies_) body.u = body.u0 + share * (body.u - body.u0);
+  for (RowRest& row : rests_) {
+    row.force *= share;
+    row.before_rebound *= share;
+  }
+}
+
+/// J that springs held at the start. Those of late rows and of pairs that began inside hold none: nothing compressed
+/// them.
+double ConvexStep::held() const {
+  double sum = 0;
+  for (const Run& run : runs_) {
+    for (std::size_t r = run.begin; r < run.end && !run.pair.began_inside; ++r) {
+      const RowRest& rest = rests_[r];
+      if (rest.late || rows_[r].both || !(rest.force > 0)) continue;
+      const double overlap = std::max(0.0, rest.curving - rows_[r].g);
+      sum += 0.5 * rest.stretch * rows_[r].k * overlap * overlap;
+    }
+  }
+  return sum;
+}
+
 /// How much of what curves may be taken: less than 1 where the contacts have done more work than the springs held that
-/// were pressed at the start, by more than kTurnsOnce. A row that is told of too much pushes the bodies apart, the work
-/// as the square of it.
+/// were pressed at the start, by more than kTurnsOnce and what late rows may give. A row that is told of too much
+/// pushes the bodies apart, the work as the square of it.
 double ConvexStep::share_of_curving() const {
   double held = 0;
   bool any = false;
@@ -103,16 +159,17 @@ double ConvexStep::share_of_curving() const {
     const Row& row = rows_[r];
     if (row.both || !row.acts()) continue;
     any = any || rests_[r].curving < 0;
+    if (rests_[r].late) continue;
     const double overlap = std::max(0.0, rests_[r].curving - row.g);
     held += 0.5 * rests_[r].stretch * row.k * overlap * overlap;
   }
-  if (!any || late_) return 1;
+  if (!any || (late_ && !parts_)) return 1;
   double work = 0, kinetic = 0;
   for (const Body& body : bodies_) {
     work += 0.5 * (body.M * (body.u - body.u0)).dot(body.before + body.u);
     kinetic += 0.5 * body.before.dot(body.M * body.before);
   }
-  const double most = kTurnsOnce * kinetic;
+  const double most = kTurnsOnce * kinetic + (parts_ ? energy_of_pushing_out() : 0);
   return work > held + most ? std::sqrt(most / (work - held)) : 1;
 }
 
@@ -198,9 +255,7 @@ void ConvexStep::end_rebound() {
   const double left = std::max(held - work, 0.0);  // s linear + s^2 quadratic is to stay below
   double s = 1;
   if (!late_ && linear + quadratic > left) {  // u of late rows is of no use: it pushes them apart
-    const double root = std::sqrt(linear * linear + 4 * quadratic * left);
-    s = linear > 0 ? 2 * left / (linear + root) : (root - linear) / (2 * quadratic);  // neither loses digits
-    s = std::clamp(s, 0.0, 1.0);
+    s = std::clamp(positive_root(quadratic, linear, left), 0.0, 1.0);
   }
   for (Body& body : bodies_) body.u = body.during + s * (body.u - body.during);
   for (std::size_t r = 0; r < rows_.size(); ++r)

@@ -1,14 +1,15 @@
-// What curved motion and curved surfaces take from a gap within the step, beyond its linear change. Private to this
-// folder.
+// What curved motion and curved surfaces take from a gap within the step, beyond its linear change, and what they give
+// where a place passes by another one. Private to this folder.
 #pragma once
 
 #include "engine/exact/candidate.hpp"
 
 namespace verisim::exact {
 
-/// How far below its linear change the gap to a face's surface is at the end of the step [m, <= 0], if the bodies move
-/// as they are taken to (RelativeMotion::during): surfaces and motion are curved, and along the feature the closest
-/// place moves. @param count  of the segments that the row stands for, from c.group on; 0: of its place alone
+/// How far from its linear change the gap to a face's surface is at the end of the step [m], if the bodies move as they
+/// are taken to (RelativeMotion::during): surfaces and motion are curved, and along the feature the closest place
+/// moves. Above 0 only as far as keeps a row from acting whose place passes by without touching. @param count  of the
+/// segments that the row stands for, from c.group on; 0: of its place alone
 [[nodiscard]] double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c,
                              const ExactFace& face, std::uint32_t count);
 

@@ -408,7 +408,8 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
   for (std::size_t i = 0; i < rows.size() && first_row + i < solver_->row_count(); ++i) {
     const double force = solver_->force(first_row + i);
     const bool late = solver_->is_late(first_row + i);
-    of.late = of.late || (late && (of.calm < kCalm || (force > 0 && solver_->began_inside(first_row + i))));
+    const bool began_inside = solver_->began_inside(first_row + i) && -rows[i].gap <= of.depth_max;  // it tells of that
+    of.late = of.late || (late && (of.calm < kCalm || began_inside));
     if (!late) of.overlap = std::max(of.overlap, -rows[i].gap);
     // A row that pushed and is free after the rebound has no force left, but two opposite ones at two places.
     const Vector3d rebound = solver_->rebound(first_row + i) * rows[i].normal;

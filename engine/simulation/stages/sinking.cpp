@@ -9,6 +9,10 @@ namespace verisim {
 
 namespace {
 
+/// m: of surfaces. As much, and a light body is squeezed out from between heavy ones. Nor are they looked for deeper than
+/// a voxel.
+constexpr double kGivesWay = 5e-5;
+
 std::string text_of_sinking(const World& world, const Note& note) {
   return fmt::format(
       "'{}' weighs {:.3g} N and sinks, {:.3g} mm by now: the contacts of its voxels are too soft; raise "
@@ -50,7 +54,7 @@ void Sinking::watch(const World& world, const Contacts& contacts, const ExactRes
     const auto [first, second, number] = world.links[l];
     const double voxel = std::max(world.bodies[first].voxel_size, world.bodies[second].voxel_size);
     const double depth = by_surfaces ? exact.depth_max(l) : contacts.depth_max(l);
-    if (!(depth > (by_surfaces ? 0.5 : 1) * voxel)) continue;  // surfaces are looked for to a voxel's depth
+    if (!(depth > (by_surfaces ? std::min(0.5 * voxel, kGivesWay) : voxel))) continue;
     const auto text = by_surfaces ? text_of_exact_sinking : text_of_sinking;
     watch(world, first, depth, text, reactions, notes);
     watch(world, second, depth, text, reactions, notes);
