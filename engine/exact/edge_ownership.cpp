@@ -253,8 +253,11 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
   const Feature& feature = *placed.feature;
   const Vector3d foot = c.p - c.at.distance * c.at.normal;
   if (feature.own_face != kNoFace) {
-    const Vector3d contact_point =
-        pair.motion.now.R.transpose() * (c.p - feature.radius_at(c.place.c) * c.at.normal - pair.motion.now.p);
+    Candidate touching = c;
+    touching.p -= feature.radius_at(c.place.c) * c.at.normal;
+    touching.at.distance = c.gap;
+    if (c.gap < -kThinnest && comes_through_another(pair, touching, face, foot)) return false;
+    const Vector3d contact_point = pair.motion.now.R.transpose() * (touching.p - pair.motion.now.p);
     const SearchThresholds& fade = pair.motion.thresholds;
     const double off = off_own_face(pair, placed, *pair.base.faces[face].surface, c);
     c.weight = std::min(1.0, (fade.own_face_none - off) / (fade.own_face_none - fade.own_face_full));

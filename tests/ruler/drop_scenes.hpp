@@ -169,6 +169,25 @@ inline std::vector<Kind> small_bodies() {
       {"small_keyed", cylinder(0.0013, 0.006) + moved(box(0.001, 0.0008, 0.006), {0.0015, 0, 0})}};
 }
 
+/// Balls and tori of which a part is cut away.
+inline std::vector<Kind> cut_rounds() {
+  const SolidPtr lower = moved(box(0.02, 0.02, 0.02), {0, 0, -0.01});
+  return {{"half_ball", ball(0.0035) - lower},
+          {"ball_cap", ball(0.004) - moved(lower, {0, 0, 0.0025})},
+          {"ball_bored", ball(0.0035) - cylinder(0.002, 0.02)},
+          {"half_torus", torus(0.0025, 0.001) - moved(box(0.02, 0.02, 0.02), {0.01, 0, 0})},
+          {"torus_top", torus(0.0025, 0.001) - moved(lower, {0, 0, 0.0003})}};
+}
+
+/// With rims and thin walls beside which they come down.
+inline std::vector<Kind> rims() {
+  return {{"wide_cone", moved(cone(0.012, 0.002, 0.005), {0, 0, -0.0025})},
+          {"disc", moved(cylinder(0.009, 0.002), {0, 0, -0.001})},
+          {"sheet", moved(box(0.018, 0.018, 0.0008), {0, 0, -0.0004})},
+          {"cup", moved(make(Solid::Kind::tube, {0.009, 0.008, 0.006}), {0, 0, -0.003})},
+          {"shallow_bowl", moved(cylinder(0.01, 0.004), {0, 0, -0.002}) - moved(ball(0.02), {0, 0, 0.0185})}};
+}
+
 /// A kind with its part, loaded once.
 struct Loaded {
   std::string name;

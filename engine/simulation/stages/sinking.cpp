@@ -9,8 +9,8 @@ namespace verisim {
 
 namespace {
 
-/// m: of surfaces. As much, and a light body is squeezed out from between heavy ones. Nor are they looked for deeper than
-/// a voxel.
+/// m: of surfaces. As much, and a light body is squeezed out from between heavy ones. Nor are they looked for deeper
+/// than a voxel.
 constexpr double kGivesWay = 5e-5;
 
 std::string text_of_sinking(const World& world, const Note& note) {
