@@ -238,7 +238,7 @@ class ConvexStep {
   [[nodiscard]] double share_of_curving() const;
   [[nodiscard]] double energy_of_pushing_out() const;
   void limit_work(double most);
-  [[nodiscard]] double held() const;
+  [[nodiscard]] double held_at_start() const;
   void scale_curving(double share);
   [[nodiscard]] bool begin_rebound(double dt);
   void move_rows(double dt);

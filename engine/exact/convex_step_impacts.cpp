@@ -124,7 +124,7 @@ void ConvexStep::limit_work(double most) {
     quadratic += 0.5 * impulse.dot(change);
     left += kTurnsOnce * 0.5 * body.before.dot(body.M * body.before);
   }
-  left += held();
+  left += held_at_start();
   if (!(linear + quadratic > left)) return;
   const double share = positive_root(quadratic, linear, left);
   for (Body& body : bodies_) body.u = body.u0 + share * (body.u - body.u0);
@@ -136,7 +136,7 @@ void ConvexStep::limit_work(double most) {
 
 /// J that springs held at the start. Those of late rows and of pairs that began inside hold none: nothing compressed
 /// them.
-double ConvexStep::held() const {
+double ConvexStep::held_at_start() const {
   double sum = 0;
   for (const Run& run : runs_) {
     for (std::size_t r = run.begin; r < run.end && !run.pair.began_inside; ++r) {

@@ -5,14 +5,17 @@
 namespace verisim::exact {
 namespace {
 
-/// Of a place that goes along `way` and is at `gap`, that changes by `linear` and by what curves: that, if it is a
-/// curve and no kink, and takes from the gap. If it gives to the gap, a place that passes by another one without
-/// touching it gets as much as keeps its row from acting: the way along a round face over an edge in front of it that
-/// is flush.
+/// Of a place that goes along `way`: what curves, if it is a curve and no kink, and takes from the gap.
+double taken_along(const BodyPair& pair, const Vector3d& way, double curves) {
+  return curves < -pair.motion.thresholds.kink * way.norm() ? 0 : std::min(0.0, curves);
+}
+
+/// Likewise of a gap that also changes by `linear`. If what curves gives to it, a place that passes by another one
+/// without touching it gets as much as keeps its row from acting: a round body that comes over an edge in front of it
+/// that is flush.
 double curving_along(const BodyPair& pair, const Vector3d& way, double gap, double linear, double curves) {
-  if (curves < -pair.motion.thresholds.kink * way.norm()) return 0;
   const double end = gap + linear;
-  if (!(curves > 0) || !(end < 0)) return std::min(0.0, curves);
+  if (!(curves > 0) || !(end < 0)) return taken_along(pair, way, curves);
   const double closest = std::min(1.0, -linear / (2 * curves));  // of the step
   const double least = gap + closest * (linear + closest * curves);
   return least < -pair.motion.thresholds.touching ? 0 : std::min(curves, -end);
@@ -61,8 +64,7 @@ double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const
   if ((normal - c.normal).squaredNorm() > kAlike * kAlike) return 0;
   const auto gap = [&](const PlacedFeature& at, const Vector3d& n) { return n.dot(at.origin - edge.center); };
   const Vector3d way = pair.moved(c.p, pair.motion.during);
-  return std::min(
-      0.0, curving_along(pair, way, c.gap, 0, gap(after, normal_of(after)) - gap(placed, normal) - normal.dot(way)));
+  return taken_along(pair, way, gap(after, normal_of(after)) - gap(placed, normal) - normal.dot(way));
 }
 
 }  // namespace
@@ -75,8 +77,7 @@ double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidat
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
   const PlacedFeature after = placed_by(motion.after(), feature);
   if (!placed.is_arc() && face.surface->kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
-    return std::min(0.0,
-                    curving_along(pair, way, c.gap, 0, face.surface->axis().dot(after.point(c.place) - c.p - way)));
+    return taken_along(pair, way, face.surface->axis().dot(after.point(c.place) - c.p - way));
   const SurfaceAt there = closest_gap(pair, after, c, face, count);
   // A normal that turns so far says nothing of the one that it was: in a close fit other rows stop the body.
   if ((there.normal - c.at.normal).norm() > motion.thresholds.kink) return 0;

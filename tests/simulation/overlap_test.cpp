@@ -151,17 +151,25 @@ Scene head_in_wall(Inputs& in, double dt) {
   return scene;
 }
 
-// What touches elsewhere says nothing of it. Unmended, the head that came out of the wall was thrown: energy x 100.
-TEST(Overlap, BesideAContactIsToldOfWhenItShowsAndThrowsNobody) {
-  for (const std::uint64_t seed : seeds(8)) {
+/// Of every scene: nobody goes faster than `fastest`, and one event tells.
+template <typename MakeScene>
+void expect_told_and_not_thrown(std::uint64_t count, double one_step, double other_step, double fastest,
+                                const MakeScene& make_scene) {
+  for (const std::uint64_t seed : seeds(count)) {
     Inputs in(seed);
-    Scene scene = head_in_wall(in, in.between(0, 1) < 0.5 ? 1e-3 : 2e-4);
+    Scene scene = make_scene(in, in.between(0, 1) < 0.5 ? other_step : one_step);
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Simulation simulation(std::move(scene), {});
     const Found found = run(simulation);
-    EXPECT_LE(found.fastest, 1.2);  // what it had, at most 0.51 m/s, and kPushOut
+    EXPECT_LE(found.fastest, fastest);
     EXPECT_EQ(found.overlaps.size(), 1U);
   }
+}
+
+// What touches elsewhere says nothing of it. Unmended, the head that came out of the wall was thrown: energy x 100.
+TEST(Overlap, BesideAContactIsToldOfWhenItShowsAndThrowsNobody) {
+  // What it had is at most 0.51 m/s.
+  expect_told_and_not_thrown(8, 2e-4, 1e-3, 0.7 + kPushOut, head_in_wall);
 }
 
 /// A plate with an upright that carries a knob, and a box that stands flush on the plate, inside of the knob's side and
@@ -193,15 +201,7 @@ Scene box_in_knob(Inputs& in, double dt) {
 
 // Rows that work against each other on short levers had tens of joules to give: unmended, it left at up to 23 km/s.
 TEST(Overlap, WhichNoMotionPartsThrowsNobody) {
-  for (const std::uint64_t seed : seeds(12)) {
-    Inputs in(seed);
-    Scene scene = box_in_knob(in, in.between(0, 1) < 0.5 ? 1e-3 : 2e-3);
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Simulation simulation(std::move(scene), {});
-    const Found found = run(simulation);
-    EXPECT_LE(found.fastest, kPushOut);
-    EXPECT_EQ(found.overlaps.size(), 1U);
-  }
+  expect_told_and_not_thrown(12, 2e-3, 1e-3, kPushOut, box_in_knob);
 }
 
 }  // namespace
