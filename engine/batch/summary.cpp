@@ -41,7 +41,7 @@ Group group_of(const Gathered& from, const std::vector<Mean>& columns, std::uint
     Mean mean = columns[i];
     mean.runs = from.measures[i].size();
     mean.mean = mean_of(from.measures[i]);
-    mean.interval = bootstrap_of_mean(from.measures[i], seed, name + " " + mean.name);
+    mean.interval = interval_of_mean(from.measures[i], seed, name + " " + mean.name);
     group.means.push_back(std::move(mean));
   }
   return group;
@@ -62,7 +62,7 @@ Summary summarize(Index& index, const std::vector<std::string>& keys, std::uint6
     for (const IndexColumn& c : index.layout().figures)
       if (c.name == figure) names.push_back(c.name);
   for (const std::string& name : names)
-    columns.push_back({.name = name, .unit = index.unit_of(name), .runs = 0, .mean = 0, .interval = {}});
+    columns.push_back({.name = name, .unit = index.unit_of(name), .runs = 0, .mean = 0, .interval = std::nullopt});
 
   std::vector<std::string> wanted = keys;
   wanted.insert(wanted.end(), {"status", "outcome"});
@@ -97,8 +97,11 @@ ordered_json to_json(const Summary& summary) {
       outcomes[s.outcome] = {
           {"count", s.count}, {"share", s.share}, {"low", s.interval.low}, {"high", s.interval.high}};
     for (const Mean& m : group.means)
-      measures[m.name] = {
-          {"mean", m.mean}, {"low", m.interval.low}, {"high", m.interval.high}, {"unit", m.unit}, {"runs", m.runs}};
+      measures[m.name] = {{"mean", m.mean},
+                          {"low", m.interval ? ordered_json(m.interval->low) : ordered_json()},
+                          {"high", m.interval ? ordered_json(m.interval->high) : ordered_json()},
+                          {"unit", m.unit},
+                          {"runs", m.runs}};
     groups.push_back(
         {{"parameters", parameters}, {"runs", group.runs}, {"outcomes", outcomes}, {"measures", measures}});
   }
@@ -124,8 +127,9 @@ std::string table_of(const Summary& summary) {
       add({s.outcome, fmt::format("{}", s.count), fmt::format("{:.1f}", 100 * s.share),
            fmt::format("{:.1f}", 100 * s.interval.low), fmt::format("{:.1f}", 100 * s.interval.high), "%"});
     for (const Mean& m : group.means)
-      add({m.name, fmt::format("{}", m.runs), fmt::format("{:.4g}", m.mean), fmt::format("{:.4g}", m.interval.low),
-           fmt::format("{:.4g}", m.interval.high), m.unit});
+      add({m.name, fmt::format("{}", m.runs), fmt::format("{:.4g}", m.mean),
+           m.interval ? fmt::format("{:.4g}", m.interval->low) : "-",
+           m.interval ? fmt::format("{:.4g}", m.interval->high) : "-", m.unit});
   }
   std::string text = table.text();
   if (summary.groups.size() > kMost)

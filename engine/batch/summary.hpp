@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct Mean {
   std::string name, unit;
   std::uint64_t runs = 0;  ///< that have a value
   double mean = 0;
-  Interval interval;
+  std::optional<Interval> interval;  ///< none of one run
 };
 
 struct Group {
