@@ -71,6 +71,16 @@ bool holds_other_things(const std::string& path) {
   return false;
 }
 
+/// Its rows would be taken for those of any design.
+void refuse_nameless_index(const std::string& path) {
+  std::error_code none;
+  const std::uintmax_t size = fs::file_size(index_of(path), none);
+  if (!none && size > 0)
+    fail(ErrorKind::input,
+         "{}: has an index and no {}, which says of what design it is; put that back, or name another folder with -o",
+         path, kManifest);
+}
+
 std::unique_ptr<MarkedFile> lock_of(const std::string& path) {
   // Workers of a batch that was killed this moment hold its lock until they are gone, too.
   constexpr int kTries = 20, kPauseMs = 100;
@@ -166,6 +176,7 @@ Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move
   if (!identity_of(file) && !identity_of(path_ + "/" + kLock) && holds_other_things(path_))
     fail(ErrorKind::io, "{}: holds no batch, but other things; name an empty folder or a new one with -o", path_);
   lock_ = lock_of(path_);
+  if (!identity_of(file)) refuse_nameless_index(path_);
   const bool merges_anew = is_half_merged(manifest) && (!identity_of(file) || is_half_merged(read_any_manifest(path_)));
   if (merges_anew) clear_half_merged(path_);
   if (identity_of(file) && !merges_anew) {

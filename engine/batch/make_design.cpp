@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "engine/base/csv.hpp"
 #include "engine/base/error.hpp"
@@ -49,6 +50,19 @@ Axis read_axis(const std::string& option, const ReadValue& read) {
   return axis;
 }
 
+/// Two equal rows are one run, told twice: its figures would count as those of two.
+void check_rows(const std::string& name, const std::vector<CsvRow>& rows, const Table& table) {
+  std::map<std::string, std::size_t> known;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    std::string key = table.seeds.empty() ? "" : fmt::format("{}\n", table.seeds[i]);
+    for (const Value& value : table.rows[i]) key += shown(plain_text(value.cell)) + "\n";
+    const std::size_t line = rows[i + 1].line;
+    if (const auto [found, is_new] = known.emplace(key, line); !is_new)
+      fail(ErrorKind::input, "{}:{}: is the run of line {} again{}; leave one out, or give them seeds or --repeat",
+           name, line, found->second, table.seeds.empty() ? "" : ", with its seed");
+  }
+}
+
 Table read_table(const DesignRequest& request, const ReadValue& read, Places& places) {
   const std::string &name = request.design_name, &content = request.design_content;
   const std::vector<CsvRow> rows = read_csv(name, content);
@@ -84,6 +98,7 @@ Table read_table(const DesignRequest& request, const ReadValue& read, Places& pl
       table.rows.back().push_back({text, read(place + ":", columns[c], text)});
     }
   }
+  check_rows(name, rows, table);
   return table;
 }
 

@@ -166,6 +166,8 @@ TEST(Design, RefusesABadTableWithItsLine) {
   EXPECT_EQ(refused(table("a,seed\n1,-2\n"), {"d.csv:2", "seed", "-2"}), 3);
   EXPECT_EQ(refused(table("a,\n1,2\n"), {"d.csv:1", "column 2 has no name"}), 3);
   EXPECT_EQ(refused(table("a,word\n1,\"x\n2,y\n"), {"d.csv:2", "never closed"}), 3);
+  EXPECT_EQ(refused(table("a,word\n2,x\n1,x\n\n2k,x\n2000,x\n"), {"d.csv:6", "run of line 5 again"}), 3);
+  EXPECT_EQ(refused(table("a,seed\n1,2\n1,3\n1,2\n"), {"d.csv:4", "run of line 2 again, with its seed"}), 3);
   DesignRequest request = table("a,seed\n1,2\n");
   request.repeat = 2;
   EXPECT_EQ(refused(request, {"--repeat"}), 2);
