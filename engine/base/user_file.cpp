@@ -34,8 +34,9 @@ void check_plain(const std::string& name, const struct stat& info) {
 
 [[noreturn]] void refuse_reading(const std::string& name, int cause) {
   if (cause == EMFILE || cause == ENFILE || cause == ENOMEM) refuse_for_now(name, cause);
-  fail(ErrorKind::input, "{}: cannot be read ({}); check its permissions", name,
-       std::generic_category().message(cause));
+  const bool is_gone = cause == ENOENT || cause == ENOTDIR;
+  fail(ErrorKind::input, "{}: cannot be read ({}); check its {}", name, std::generic_category().message(cause),
+       is_gone ? "name and folder" : "permissions");
 }
 
 }  // namespace

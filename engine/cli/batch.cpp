@@ -429,8 +429,10 @@ void find_scenario(BatchOptions& o) {
 }
 
 void add_work_options(CLI::App& command, BatchOptions& o) {
-  command.add_option("-o,--out", o.out,
-                     "Folder to write, or to go on in if it holds the same design (default: runs/SCENARIO-batch)");
+  command
+      .add_option("-o,--out", o.out,
+                  "Folder to write, or to go on in if it holds the same design (default: runs/SCENARIO-batch)")
+      ->check(named());
   command.add_option("--jobs", o.jobs, "Runs at the same time (default: all cores)")->check(CLI::Range(1, 4096));
   command.add_option("--time-limit", o.time_limit, "Seconds of wall clock of a run (default: an hour)")
       ->check(seconds());

@@ -24,7 +24,8 @@ std::string table_of(batch::Index& index, const batch::Summary& summary, const s
   for (const char* status : batch::kStatuses)
     if (const std::uint64_t n = index.count(status))
       counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", n, status);
-  return fmt::format("{}: {} runs: {}\n{}", folder, index.runs().size(), counts, batch::table_of(summary));
+  const std::size_t runs = index.runs().size();
+  return fmt::format("{}: {} run{}: {}\n{}", folder, runs, runs == 1 ? "" : "s", counts, batch::table_of(summary));
 }
 
 int exit_code_of(batch::Index& index, const std::string& folder) {

@@ -206,8 +206,8 @@ void add_inspect(CLI::App& app, int& exit_code) {
   command->add_option("--bind", o->binds, "NAME=SOURCE: drive the device NAME, as of 'verisim run'")->take_all();
   command->add_flag("--json", o->json, "One JSON object on stdout");
   command->footer(
-      "Example: verisim inspect bearing.step --voxel 0.0005\n"
-      "         verisim inspect scenarios/peg_in_hole.lua --set clearance=mm(2)");
+      "Example: verisim inspect scenarios/models/bearing.step --voxel 0.0005\n"
+      "         verisim inspect scenarios/peg_in_hole.lua --set clearance=2mm");
   command->callback([=, &exit_code] {
     const std::string suffix = std::filesystem::path(o->model).extension().string();
     const bool is_scenario = suffix == ".lua" || suffix == ".LUA";

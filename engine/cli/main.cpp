@@ -33,7 +33,7 @@ int run_command(int argc, char** argv) {
   app.set_version_flag("--version", VERISIM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Example: verisim run scenarios/peg_in_hole.lua --set clearance=mm(2)\nverisim COMMAND --help explains each.");
+      "Example: verisim run scenarios/peg_in_hole.lua --set clearance=2mm\nverisim COMMAND --help explains each.");
   int exit_code = 0;
   verisim::cli::add_run(app, exit_code);
   verisim::cli::add_batch(app, exit_code);

@@ -10,7 +10,7 @@ namespace verisim::cli {
 
 CLI::Option* add_out_options(CLI::App& command, OutOptions& out, const std::string& description) {
   command.add_flag("--force", out.force, "Let -o replace a plain file of any kind; an input, a device, a folder never");
-  return command.add_option("-o,--out", out.path, description);
+  return command.add_option("-o,--out", out.path, description)->check(named());
 }
 
 void add_seed_option(CLI::App& command, std::function<void(std::uint64_t)> take, const std::string& description) {
@@ -30,6 +30,12 @@ void add_seed_option(CLI::App& command, std::function<void(std::uint64_t)> take,
           },
           description)
       ->type_name("UINT64");
+}
+
+CLI::Validator named() {
+  return CLI::Validator(
+      [](const std::string& text) { return text.empty() ? "is empty; name one, or leave it out" : std::string(); }, "",
+      "named");
 }
 
 CLI::Validator seconds() {

@@ -44,6 +44,9 @@ CLI::Option* add_out_options(CLI::App& command, OutOptions& out, const std::stri
 /// A seed: decimal digits alone, up to 2^64 - 1. Anything else is wrong usage that names it.
 void add_seed_option(CLI::App& command, std::function<void(std::uint64_t)> take, const std::string& description);
 
+/// A place that has a name: an empty one, as of a shell's variable that is not set, is none.
+[[nodiscard]] CLI::Validator named();
+
 /// Seconds: finite and above 0.
 [[nodiscard]] CLI::Validator seconds();
 

@@ -80,7 +80,7 @@ void add_run(CLI::App& app, int& exit_code) {
   add_simulate_options(*command, *options);
   auto parameters = std::make_shared<bool>(false);
   command->add_flag("--parameters", *parameters, "List what --set can change, and run nothing");
-  command->footer("Example: verisim run scenarios/peg_in_hole.lua --set clearance=mm(2) --json");
+  command->footer("Example: verisim run scenarios/peg_in_hole.lua --set clearance=2mm --json");
   command->callback([=, &exit_code] { exit_code = run(*scenario, *options, *parameters); });
 }
 

@@ -120,6 +120,7 @@ Sweep::Sweep(const SweepRequest& request) : request_(request) {
     make_truth();
   else
     say_where_truth_is_not_finer(truth_values);
+  say_what_the_truth_has_of_its_own();
   say_what_is_not_reached();
 }
 
@@ -195,6 +196,29 @@ void Sweep::say_where_truth_is_not_finer(const std::map<std::string, batch::Cell
         fmt::format("the truth's {0} ({1:g}) is not finer than that of the settings that it judges "
                     "({2:g}): an error against it is a difference; name a finer one with --truth {0}=…",
                     dial, of_truth, finest));
+  }
+}
+
+/// Of what is varied and no dial, as a size of the scene, the truth has one value: an error against it is then no
+/// setting's.
+void Sweep::say_what_the_truth_has_of_its_own() {
+  const bool is_default = request_.truth.empty();
+  for (const batch::Axis& axis : design_.axes) {
+    const auto is_axis = [&](const auto& named) { return axis.key == named.first; };
+    const bool is_dial =
+        std::any_of(std::begin(kDials), std::end(kDials), [&](const Dial& d) { return axis.key == d.parameter; });
+    const bool is_compared = std::any_of(std::begin(kFinerIsSmaller), std::end(kFinerIsSmaller),
+                                         [&](const char* dial) { return axis.key == dial; });
+    if (std::any_of(truth_sets_.begin(), truth_sets_.end(), is_axis) || is_compared || (is_dial && is_default))
+      continue;
+    for (const ParameterDeclaration& p : declared_)
+      if (p.name == axis.key)
+        notes_.push_back(
+            fmt::format("the truth's {0} is {1}, the scenario's own, for all settings: where they have another, what "
+                        "that changes in the scene is an error, too; {2}",
+                        axis.key, shown(p.value_json, 40),
+                        is_dial ? fmt::format("name one with --truth {}=…", axis.key)
+                                : fmt::format("sweep it apart: --set {}=… in place of --vary", axis.key)));
   }
 }
 

@@ -44,6 +44,7 @@ class Sweep {
   void make_truth();
   [[nodiscard]] std::string truth_text() const;
   void say_what_is_not_reached();
+  void say_what_the_truth_has_of_its_own();
   void say_where_truth_is_not_finer(const std::map<std::string, batch::Cell>& truth);
   /// Computes it in a process of its own. Error(input) with the reason if that gave no answer.
   [[nodiscard]] std::string in_a_process(const std::function<std::string()>& work);

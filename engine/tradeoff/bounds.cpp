@@ -122,8 +122,9 @@ std::string text_of(const Bounds& bounds) {
   if (bounds.budget_us) text += fmt::format("a median frame with contact of at most {:g} us", *bounds.budget_us);
   if (bounds.error) {
     const ErrorKindInfo& kind = kKinds[index_of(bounds.error->kind)];
-    text += fmt::format("{}an error '{}' of at most {:g} {}", text.empty() ? "" : " and ", kind.name,
-                        bounds.error->most, kind.unit);
+    const std::string unit = kind.unit == std::string("1") ? "" : std::string(" ") + kind.unit;
+    text += fmt::format("{}an error '{}' of at most {:g}{}", text.empty() ? "" : " and ", kind.name, bounds.error->most,
+                        unit);
   }
   return text;
 }

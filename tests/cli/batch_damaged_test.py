@@ -76,6 +76,20 @@ class Damaged(Batches):
                 f.write(text)
             self.look(text, may_be_whole=True)  # the machine and the scenario's place may be others
 
+    def test_an_index_without_its_design_is_no_other_designs(self):
+        args = ["--vary", "speed=0.4,0.5", *LIGHT]
+        self.batch_json("b", *args)
+        before = self.index("b")
+        manifest = os.path.join(self.path("b"), "batch.json")
+        os.rename(manifest, self.path("batch.json"))
+        for vary in ("speed=0.4,0.5", "speed=0.6,0.7"):
+            self.refuse(3, ["has an index and no batch.json", "-o"], "batch", self.scenario, "-o", self.path("b"), "--vary", vary, *LIGHT)
+        self.batch_json("s", *args, "--shard", "1/1")
+        self.refuse(3, ["has an index and no batch.json"], "batch", "merge", self.path("b"), self.path("s"))
+        os.rename(self.path("batch.json"), manifest)
+        self.assertEqual(self.batch_json("b", *args)["done"], 2)
+        self.assertEqual(self.index("b"), before)
+
     def test_what_is_wrong_in_batch_json_is_named(self):
         for text, words in (('{\n"format": "verisim-batch",\n]', "batch.json:3: is no JSON, or the file ends there"),
                             (lambda whole: {**whole, "runs": "x"}, "batch.json: 'runs' is missing or not what it should be"),

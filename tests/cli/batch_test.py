@@ -108,6 +108,13 @@ class Designs(Batches):
         values = [float(r["chance"]) for r in self.rows("b")[:6]]
         self.assertAlmostEqual(chance["mean"], sum(values) / 6, places=14)
 
+    def test_one_run_has_no_interval_of_a_mean(self):
+        text = self.batch("b", *LIGHTER).stdout
+        self.assertIn(": 1 run: 1 done", text.splitlines()[0])
+        self.assertRegex(text, r"chance +1 +0\.\d+ +- +- +1\n")
+        chance = self.batch_json("b", *LIGHTER)["groups"][0]["measures"]["chance"]
+        self.assertEqual((chance["low"], chance["high"], chance["runs"]), (None, None, 1))
+
     def test_insertion_and_true_overlap_are_columns(self):
         scenario = os.path.join(SOURCE, "scenarios", "peg_in_hole.lua")
         folder = self.path("pins")
@@ -256,6 +263,8 @@ class BadInput(Batches):
         refused(3, ["--random sped=1: ", "no parameter 'sped'"], "--random", 3, "sped=1..2")
         refused(2, ["no distribution"], "--random", 3, "speed=gauss")
         refused(2, ["no zone 'Q7'"], "--random", 3, "speed=zone:Q7:25mm")
+        refused(3, ["f.csv:3: is the run of line 2 again", "--repeat"], "--design", self.write("f.csv", "speed\n1\n1000mm\n"))
+        self.refuse(2, ["--out", "is empty"], "batch", self.scenario, "-o", "")
         refused(2, "--keep", "--keep", "some")
         refused(2, "--time-limit", "--time-limit", "-1")
         begin = time.monotonic()

@@ -2,13 +2,14 @@
 import ctypes
 import json
 import os
+import re
 import resource
 import subprocess
 import unittest
 
 import h5py
 
-from program import turned_stl, ProgramTest, SMALL, VERISIM
+from program import turned_stl, ProgramTest, SMALL, SOURCE, VERISIM
 
 def system_grants_priority():
     before = os.sched_getscheduler(0), os.sched_getparam(0)
@@ -38,6 +39,22 @@ class Commands(ProgramTest):
         self.assertIn("Example:", self.succeed("batch", "merge", "--help").stdout)
         for command in ["info", "convert", "synth"]:
             self.assertIn("Example:", self.succeed("trace", command, "--help").stdout)
+
+    def test_examples_are_what_a_shell_takes_and_their_files_are_there(self):
+        commands = [line.split()[0] for line in self.succeed("--help").stdout.split("Subcommands:")[1].splitlines() if line.startswith("  ")
+                    and not line.startswith("   ")]
+        self.assertIn("tradeoff", commands)
+        for words in [[], *([command] for command in commands), ["batch", "merge"], *(["trace", kind] for kind in ("info", "convert", "synth"))]:
+            text = self.succeed(*words, "--help").stdout
+            self.assertIn("Example:", text, words)
+            example = re.sub(r"(?m)^(Example:)? +(?=verisim )", "", text[text.index("Example:"):])
+            for line in example.splitlines():
+                if not line.startswith("verisim ") or line.startswith("verisim COMMAND"):
+                    continue
+                done = subprocess.run(["bash", "-n", "-c", line], capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stderr), (0, ""), line)
+                for file in re.findall(r"scenarios/[\w/.]+|\S+\.step\b", line):
+                    self.assertTrue(os.path.exists(os.path.join(SOURCE, file)), line)
 
     def test_wrong_usage_is_exit_2(self):
         scenario = self.write("small.lua", SMALL)

@@ -109,6 +109,18 @@ class Tradeoff(ProgramTest):
         self.assertIn("voxelsize (0.02) is not finer than that of the settings that it judges (0.01)", both[0])
         self.assertIn("--truth timestep=", both[1])
 
+    @unittest.skipIf(SANITIZED, "the same code as above")
+    def test_a_truth_of_another_scene_than_what_it_judges_is_said(self):
+        def notes(*args):
+            return [n for n in self.tradeoff("--repeat", 1, "--duration", "0.1", *args)["notes"] if "the scenario's own" in n]
+        self.assertEqual(notes("--vary", "voxelsize=10mm,20mm", "--vary", "hybrid=off,exact"), [])
+        (depth,) = notes("--vary", "depth=20mm,21mm")
+        self.assertIn("the truth's depth is 0.02, the scenario's own", depth)
+        self.assertIn("--set depth=", depth)
+        (hybrid,) = notes("--vary", "hybrid=off,exact", "--truth", "voxelsize=5mm")
+        self.assertIn("--truth hybrid=", hybrid)
+        self.assertEqual(notes("--vary", "depth=20mm,21mm", "--truth", "depth=20mm"), [])
+
     @unittest.skipIf(SANITIZED, "test_the_truth_has_its_order_of_convergence runs the same code")
     def test_a_repetition_whose_force_hangs_on_the_step_is_named_with_its_order(self):
         # With this seed the pin's rim is caught at the hole's edge: two blows within a step.

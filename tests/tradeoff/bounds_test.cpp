@@ -48,6 +48,13 @@ TEST(Bounds, TakeTheKindFromTheUnit) {
   EXPECT_THROW((void)budget_from("b", "-1us"), Error);
 }
 
+TEST(Bounds, AreToldInTheirUnits) {
+  EXPECT_EQ(text_of(Bounds{.budget_us = 20, .error = ErrorBound{Kind::force, 2}}),
+            "a median frame with contact of at most 20 us and an error 'force' of at most 2 N");
+  EXPECT_EQ(text_of(Bounds{.budget_us = {}, .error = ErrorBound{Kind::wrench, 0.05}}),
+            "an error 'wrench' of at most 0.05");
+}
+
 TEST(Choose, IsTheCheapestWithinAnErrorOrTheMostAccurateWithinABudget) {
   std::vector<Row> rows = {row_of(10, 5), row_of(20, 1), row_of(50, 0.1), row_of(1, 0)};
   rows[3].failed = "it crashed";

@@ -45,10 +45,10 @@ class Batch:
 
 
 def batch(scenario, out, parameters=None, *, vary=None, repeat=1, seed=None, design=None, random=None, jobs=None, duration=None,
-          measure=False, keep="summary", time_limit=None, retry_failed=False, binds=None, **more):
+          measure=False, keep="summary", time_limit=None, memory_limit=None, retry_failed=False, binds=None, **more):
     """Runs many: vary={"clearance": ["1mm", "0.1mm"]} is a grid, random=(1000, {"clearance": "1mm..5mm"}) draws, design
     a CSV file. parameters and more: as in run(). Goes on where a batch in the folder `out` stopped; retry_failed does
-    again what was killed, crashed, or had too little time or memory. Failure as the
+    again what was killed, crashed, or had too little time [s] or memory [MiB]. Failure as the
     program says it; a run that could not be done is a row, and a warning says how many there are. ValueError: as of run()."""
     out = path_of("out", out)
     if not out:
@@ -64,7 +64,8 @@ def batch(scenario, out, parameters=None, *, vary=None, repeat=1, seed=None, des
     for option, value, text_of in (("--seed", seed, seed_of), ("--design", design, lambda v: path_of("design", v)),
                                    ("--jobs", jobs, lambda v: whole_of("jobs", v, 1, 4096)),
                                    ("--duration", duration, lambda v: seconds_of("duration", v)),
-                                   ("--time-limit", time_limit, lambda v: seconds_of("time_limit", v))):
+                                   ("--time-limit", time_limit, lambda v: seconds_of("time_limit", v)),
+                                   ("--memory-limit", memory_limit, lambda v: whole_of("memory_limit", v, 1, 1 << 30))):
         if value is not None:
             arguments += [option, str(text_of(value))]
     if flag_of("measure", measure):
