@@ -22,6 +22,7 @@ project=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 verisim=${VERISIM:-$project/build/verisim}
 [ -x "$verisim" ] || verisim=$(command -v verisim) || { echo "error: no verisim; name the program in VERISIM" >&2; exit 2; }
 verisim=$(realpath "$verisim")
+command -v sbatch > /dev/null || { echo "error: no sbatch: this machine submits no jobs to Slurm (apt install slurm-client); without Slurm use verisim batch --shard" >&2; exit 2; }
 cpus=${CPUS:-1}
 mkdir -p "$folder"
 folder=$(realpath "$folder")

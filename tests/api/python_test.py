@@ -66,6 +66,10 @@ class PythonModule(ProgramTest):
         self.assertFalse([c for c in table.columns if c.startswith("state/links/")])
         with self.assertRaisesRegex(ValueError, "no row in every frame"):
             run.to_pandas(["state/links/wrench"])
+        self.assertEqual(list(run.to_pandas("state/time").columns), ["state/time"], "one needs no list")
+        for table_of in (run.to_pandas, run.to_xarray):
+            with self.assertRaisesRegex(verisim.Failure, "did you mean '/state/body/box/pose'"):
+                table_of(["state/body/box/pos"])
         data = run.to_xarray()
         self.assertEqual(set(data.data_vars), {path.lstrip("/") for path in run.fields})
         self.assertEqual(data["state/body/box/pose"].dims, ("frame", "pose"))

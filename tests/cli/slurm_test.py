@@ -141,5 +141,17 @@ class Slurm(ProgramTest):
             self.assertEqual(a.read(), b.read())
 
 
+class WithoutSlurm(ProgramTest):
+    def test_a_machine_that_submits_no_jobs_is_told_so_and_nothing_is_begun(self):
+        os.mkdir(self.path("bin"))
+        for name in ("bash", "dirname", "realpath", "mkdir", "sed"):
+            os.symlink(shutil.which(name), self.path("bin/" + name))
+        done = subprocess.run([os.path.join(SOURCE, "scenarios", "batch", "slurm.sh"), "2", self.path("many"), self.write("many.lua", MANY)],
+                              env=dict(os.environ, PATH=self.path("bin"), VERISIM=VERISIM), capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, "^error: no sbatch[^\n]+--shard\n$")
+        self.assertFalse(os.path.exists(self.path("many")))
+
+
 if __name__ == "__main__":
     unittest.main()

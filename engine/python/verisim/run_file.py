@@ -97,7 +97,13 @@ class Run:
         return xarray.Dataset(variables, coords=coordinates, attrs=self.attributes)
 
     def _paths(self, paths):
-        return list(self.fields) if paths is None else ["/" + path.lstrip("/") for path in paths]
+        if paths is None:
+            return list(self.fields)
+        paths = ["/" + path.lstrip("/") for path in ([paths] if isinstance(paths, str) else paths)]
+        for path in paths:
+            if path not in self.fields:
+                self[path]  # Failure, with the names that are like it
+        return paths
 
 
 def _components(field):
