@@ -20,6 +20,21 @@ class Readme(ProgramTest):
         printed = self.succeed(*words).stdout.strip().splitlines()
         self.assertEqual(printed[1:], shown[2:])  # the first line names the folder
 
+    def test_the_trade_off_has_the_errors_that_it_shows(self):
+        shown = readme().split("## I trade speed for accuracy")[1].split("```")[1].strip().splitlines()
+        words = [os.path.join(SOURCE, w) if w.startswith("scenarios/") else w for w in shown[0].removeprefix("$ build/verisim ").split()]
+        words[words.index("-o") + 1] = self.path("trade")
+        printed = self.succeed(*words).stdout.strip().splitlines()
+        self.assertEqual(printed[:2], shown[1:3], "the truth, and what is known of it")
+        names = ["#", "hybrid", "voxelsize", "frame, us", "from", "to", "us per ms", "force, N"]
+        self.assertEqual(re.split("  +", shown[3].strip())[:len(names)], re.split("  +", "  ".join(names)))
+
+        def computed(lines):  # columns 3 to 6 are times, and what is dominated hangs on them
+            rows = [line.split() for line in lines if re.match(r"  \d  ", line)]
+            return [row[:3] + row[7:14] for row in rows]
+        self.assertEqual(len(computed(shown)), 6)
+        self.assertEqual(computed(printed), computed(shown))
+
     def test_the_ledgers_have_the_figures_that_it_shows(self):
         shown = re.search(r"^passivity ledgers, J\n(.*?)  …$", readme(), re.M | re.S)[1].splitlines()
         printed = self.succeed("stability", "--only", "ledgers").stdout.splitlines()
