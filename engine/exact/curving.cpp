@@ -1,6 +1,9 @@
 #include "engine/exact/curving.hpp"
 
+#include <algorithm>
+
 #include "engine/exact/edge_crossing.hpp"
+#include "engine/exact/edge_ownership.hpp"
 
 namespace verisim::exact {
 namespace {
@@ -11,14 +14,38 @@ double taken_along(const BodyPair& pair, const Vector3d& way, double curves) {
 }
 
 /// Likewise of a gap that also changes by `linear`. If what curves gives to it, a place that passes by another one
-/// without touching it gets as much as keeps its row from acting: a round body that comes over an edge in front of it
-/// that is flush.
+/// without touching it gets as much as keeps its row from acting.
 double curving_along(const BodyPair& pair, const Vector3d& way, double gap, double linear, double curves) {
   const double end = gap + linear;
   if (!(curves > 0) || !(end < 0)) return taken_along(pair, way, curves);
   const double closest = std::min(1.0, -linear / (2 * curves));  // of the step
   const double least = gap + closest * (linear + closest * curves);
   return least < -pair.motion.thresholds.touching ? 0 : std::min(curves, -end);
+}
+
+/// What a place in front of a face lacks at the end of the step for its row not to act. Where others hold the body it
+/// goes lower by nanometres. @param end  its gap then, by its linear change [m]
+double lacks(const BodyPair& pair, const Candidate& c, double end) {
+  const double touching = pair.motion.thresholds.touching;
+  return c.gap > touching ? std::max(0.0, touching - end) : 0;
+}
+
+/// What curves of the gap of a place in front of a round face, if it passes by without touching on the way that the
+/// bodies are taken to go: a ball comes over an edge that is flush. 0 if it does not.
+/// @param linear  the gap's linear change [m]   @param gap_at  the gap at a place of the base's coordinates
+template <typename F>
+double of_passing(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, double linear, F&& gap_at) {
+  constexpr int kLooks = 8;
+  const double end = c.gap + linear;
+  const double lack = lacks(pair, c, end);
+  if (lack == 0) return 0;
+  double gap = 0;
+  for (int i = 1; i <= kLooks; ++i) {
+    const Placement there = pair.motion.after_part(static_cast<double>(i) / kLooks);
+    gap = gap_at(placed_by(there, *placed.feature).point(c.place));
+    if (gap < -pair.motion.thresholds.touching) return 0;
+  }
+  return std::clamp(gap - end, 0.0, lack);
 }
 
 /// The place of `count` segments from `first` on that is closest to a surface.
@@ -31,11 +58,26 @@ Place closest_of(const BodyPair& pair, const PlacedFeature& placed, const Analyt
                        placed.feature->radius_slope);
 }
 
+/// True if a place that the bodies come to within the step is the face's: it lies on it, and no convex edge gives it to
+/// another one.
+bool is_of_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p) {
+  const ExactFace& mine = pair.base.faces[face];
+  const SurfaceAt at = mine.surface->at(p);
+  const Trim::Answer answer = mine.trim->find(*mine.surface, p - at.distance * at.normal);
+  if (answer.where == Trim::Where::outside) return false;
+  return std::none_of(answer.edges.begin(), answer.edges.end(), [&](std::uint32_t e) {
+    const ExactEdge& edge = pair.base.edges[e];
+    if (edge.convexity != Convexity::convex) return false;
+    const double other = pair.base.faces[face_across(edge, face)].surface->at(p).distance;
+    return other > at.distance && edge.limits_face_at(face, p, other);
+  });
+}
+
 /// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
-/// If the group, of `count` segments, is nearer by more than what touches anyway, and on the face, that of the group.
-SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactFace& face,
+/// If the group, of `count` segments, is nearer by more than what touches anyway, and the face's, that of the group.
+SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t face,
                       std::uint32_t count) {
-  const AnalyticSurface& surface = *face.surface;
+  const AnalyticSurface& surface = *pair.base.faces[face].surface;
   const auto gap_at = [&](const Place& place) {
     SurfaceAt at = surface.at(placed.point(place));
     at.distance -= placed.feature->radius_at(place.c);
@@ -47,10 +89,7 @@ SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const C
   const Place place = closest_of(pair, placed, surface, c.group, count);
   SurfaceAt of_group = gap_at(place);
   if (of_group.distance > of_segment.distance - pair.motion.thresholds.touching) return of_segment;
-  const Vector3d p = placed.point(place);
-  const SurfaceAt at = surface.at(p);
-  const Vector3d foot = p - at.distance * at.normal;
-  return face.trim->find(surface, foot).where == Trim::Where::outside ? of_segment : of_group;
+  return is_of_face(pair, face, placed.point(place)) ? of_group : of_segment;
 }
 
 double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& after,
@@ -67,10 +106,28 @@ double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const
   return taken_along(pair, way, gap(after, normal_of(after)) - gap(placed, normal) - normal.dot(way));
 }
 
+/// True if the curve is inside of an edge at the end of the step, near the candidate.
+bool cross_after(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) {
+  const RelativeMotion no_motion = still(pair.motion, pair.motion.after());
+  const BodyPair there{pair.mover, pair.base, no_motion};
+  const Feature& feature = *placed.feature;
+  const PlacedFeature after = placed_by(no_motion.now, feature);
+  const std::uint32_t first = std::max(feature.begin + kGroupMax, c.sample) - kGroupMax;
+  for (std::uint32_t i = first; i < std::min(feature.end, c.sample + kGroupMax + 1); ++i) {
+    Candidate crossed = c;
+    crossed.sample = i;
+    if (cross_edge(there, after, edge, closest_places_to(there, after, edge, i), crossed) &&
+        crossed.gap < -pair.motion.thresholds.touching)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactFace& face,
+double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t number,
                std::uint32_t count) {
+  const ExactFace& face = pair.base.faces[number];
   const RelativeMotion& motion = pair.motion;
   const Feature& feature = *placed.feature;
   const Vector3d way = pair.moved(c.p, motion.during);
@@ -78,11 +135,25 @@ double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidat
   const PlacedFeature after = placed_by(motion.after(), feature);
   if (!placed.is_arc() && face.surface->kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
     return taken_along(pair, way, face.surface->axis().dot(after.point(c.place) - c.p - way));
-  const SurfaceAt there = closest_gap(pair, after, c, face, count);
+  const SurfaceAt there = closest_gap(pair, after, c, number, count);
+  const double linear = c.at.normal.dot(way);
+  const auto gap_at = [&](const Vector3d& p) { return face.surface->at(p).distance - feature.radius_at(c.place.c); };
+  if (there.distance > -motion.thresholds.touching)
+    if (const double passing = of_passing(pair, placed, c, linear, gap_at); passing > 0) return passing;
   // A normal that turns so far says nothing of the one that it was: in a close fit other rows stop the body.
   if ((there.normal - c.at.normal).norm() > motion.thresholds.kink) return 0;
-  const double linear = c.at.normal.dot(way);
   return curving_along(pair, way, c.gap, linear, there.distance - c.gap - linear);
+}
+
+double passing_of_edges(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) {
+  constexpr double kOneFace = 0.02;  // of edge_fraction: the normal is that of one face, along which the curve runs
+  if (c.edge_fraction > kOneFace) return 0;
+  const auto gap_at = [&](const Vector3d& p) {
+    return std::max(pair.base.faces[edge.faces[0]].surface->at(p).distance,
+                    pair.base.faces[edge.faces[1]].surface->at(p).distance);
+  };
+  const double passing = of_passing(pair, placed, c, c.normal.dot(pair.moved(c.p, pair.motion.during)), gap_at);
+  return passing > 0 && !cross_after(pair, placed, c, edge) ? passing : 0;
 }
 
 double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) {
@@ -91,6 +162,7 @@ double curving_of_edges(const BodyPair& pair, const PlacedFeature& placed, const
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
   const PlacedFeature after = placed_by(motion.after(), *placed.feature);
   if (!placed.is_arc() && edge.extent == ExactEdge::Extent::line) return curving_of_lines(pair, placed, after, c, edge);
+  if (const double passing = passing_of_edges(pair, placed, c, edge); passing > 0) return passing;
   const RelativeMotion no_motion = still(motion, motion.after());
   const BodyPair there{pair.mover, pair.base, no_motion};
   Candidate crossed = c;

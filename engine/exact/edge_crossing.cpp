@@ -81,10 +81,16 @@ class ComparedFaces {
 };
 
 /// True if a straight edge ends on the plane that it leaves faster: what lies there is held by what it lies on, and
-/// does not stumble over the other face's side of the edge. @param slope  of the edge, from the plane
-bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t face,
-                       const SurfaceAt& at, double slope) {
-  if (placed.is_arc() || pair.base.faces[face].surface->kind() != SurfaceKind::plane) return false;
+/// does not stumble over the other face's side of the edge. @param a, b  of its place, from the two faces
+bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge,
+                       const SurfaceAt& a, const SurfaceAt& b) {
+  const Vector3d tangent = placed.tangent(c.place);
+  const double slope_a = a.normal.dot(tangent), slope_b = b.normal.dot(tangent);
+  const bool leaves_a = std::abs(slope_a) > std::abs(slope_b);
+  const double slope = leaves_a ? slope_a : slope_b;
+  const SurfaceAt& at = leaves_a ? a : b;
+  if (placed.is_arc() || pair.base.faces[edge.faces[leaves_a ? 0 : 1]].surface->kind() != SurfaceKind::plane)
+    return false;
   const Feature& feature = *placed.feature;
   const std::vector<double>& middle = pair.mover.sample_c;
   const double end =
@@ -156,9 +162,7 @@ bool cross_edge_by(const ComparedFaces& faces, const BodyPair& pair, const Place
   const std::optional<double> weight = weight_of_first(pair, placed, edge, slope_a, slope_b);
   if (!weight) return false;
   const double weight_a = *weight;
-  if (std::abs(slope_a) > std::abs(slope_b) ? lies_with_its_end(pair, placed, c, edge.faces[0], at.a, slope_a)
-                                            : lies_with_its_end(pair, placed, c, edge.faces[1], at.b, slope_b))
-    return false;
+  if (lies_with_its_end(pair, placed, c, edge, at.a, at.b)) return false;
   const Vector3d mixed = weight_a * at.a.normal + (1 - weight_a) * at.b.normal;
   const double length = mixed.norm();
   if (length < pair.motion.thresholds.blade) return false;
@@ -221,6 +225,26 @@ bool may_cross_edge(const BodyPair& pair, const PlacedFeature& placed, const Exa
   return mixed < (pair.motion.margin + kRounding) * length && mixed > -(pair.base.options.spacing + kRounding) * length;
 }
 
+bool lies_already(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge, const Candidate& c) {
+  const std::array<SurfaceAt, 2> at{pair.base.faces[edge.faces[0]].surface->at(c.p),
+                                    pair.base.faces[edge.faces[1]].surface->at(c.p)};
+  if (lies_with_its_end(pair, placed, c, edge, at[0], at[1])) return true;
+  for (const std::size_t side : {0, 1}) {
+    const ExactFace& face = pair.base.faces[edge.faces[side]];
+    for (const std::uint32_t e : face.trim->find(*face.surface, c.p - at[side].distance * at[side].normal).edges) {
+      const ExactEdge& border = pair.base.edges[e];
+      const std::uint32_t third = face_across(border, edge.faces[side]);
+      if (border.convexity != Convexity::convex || third == edge.faces[1 - side]) continue;
+      const SurfaceAt there = pair.base.faces[third].surface->at(c.p);
+      if (std::abs(there.distance) < pair.motion.thresholds.coincident &&
+          pair.normal_cone_weight(c.sample, there.normal) >= 1 &&
+          border.limits_face_at(edge.faces[side], c.p, there.distance))
+        return true;
+    }
+  }
+  return false;
+}
+
 bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
                 const std::array<Place, 2>& near, Candidate& c) {
   if (placed.feature->half_width == 0) return false;
@@ -232,13 +256,20 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEd
   };
   const OwnershipRule here = rule_at(near[0]);
   const OwnershipRule by_motion = here == OwnershipRule::by_position ? rule_at(near[1]) : here;
-  for (const OwnershipRule rule : {OwnershipRule::by_position, by_motion}) {
-    Candidate crossed = c;
-    if (!cross_edge_by(ComparedFaces(pair, edge, rule), pair, placed, edge, near, crossed)) continue;
-    c = crossed;
-    return true;
+  const bool is_of_lines = !placed.is_arc() && a.kind() == SurfaceKind::plane && b.kind() == SurfaceKind::plane;
+  const auto crosses_by = [&](OwnershipRule rule, Candidate& crossed) {
+    return cross_edge_by(ComparedFaces(pair, edge, rule), pair, placed, edge, near, crossed);
+  };
+  Candidate crossed = c, moved = c;
+  if (!crosses_by(OwnershipRule::by_position, crossed)) {
+    if (!crosses_by(by_motion, moved)) return false;
+    crossed = moved;
+  } else if (!is_of_lines && crossed.at.distance > pair.motion.thresholds.coincident) {
+    // Outside of both faces: what is round passes beside the edge if by no motion it meets it.
+    if (!crosses_by(by_motion, moved) && !crosses_by(OwnershipRule::by_last_motion, moved)) return false;
   }
-  return false;
+  c = crossed;
+  return true;
 }
 
 }  // namespace verisim::exact

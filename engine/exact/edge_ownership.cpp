@@ -69,10 +69,12 @@ bool ends_at_concave_corner(const BodyPair& pair, const PlacedFeature& placed, c
 }
 
 /// True if a curve that ends at the place, where it has not yet entered the face, comes nearer to the other one the
-/// farther it is from its end: that face has its row there, and nothing to push this end with.
+/// farther it is from its end: that face has its row there, and nothing to push this end with. What lies along the
+/// other one to rounding is held at its end as well.
 bool falls_from_end(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const SurfaceAt& other) {
-  return c.at.distance > -pair.motion.thresholds.coincident &&
-         c.place.t * other.normal.dot(placed.tangent(c.place)) > 0 && ends_at_concave_corner(pair, placed, c);
+  const double coincident = pair.motion.thresholds.coincident;
+  return c.at.distance > -coincident && 2 * c.place.t * other.normal.dot(placed.tangent(c.place)) > coincident &&
+         ends_at_concave_corner(pair, placed, c);
 }
 
 /// True if the face's distance goes on falling beyond the end of the sample's segment at which the place lies, and the
@@ -89,18 +91,33 @@ bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, con
          !ends_at_concave_corner(pair, placed, c);
 }
 
+/// True if a place near a point of a face lies on another one, across a convex edge, that can push it: it will slide
+/// on.
+bool lies_across(const BodyPair& pair, std::uint32_t face, const Vector3d& foot, const Candidate& c) {
+  const auto& faces = pair.base.faces;
+  const Trim::Answer answer = faces[face].trim->find(*faces[face].surface, foot);
+  return std::any_of(answer.edges.begin(), answer.edges.end(), [&](std::uint32_t e) {
+    const ExactEdge& edge = pair.base.edges[e];
+    if (edge.convexity != Convexity::convex) return false;
+    const SurfaceAt there = faces[face_across(edge, face)].surface->at(c.p);
+    return std::abs(there.distance) < pair.motion.thresholds.coincident &&
+           pair.normal_cone_weight(c.sample, there.normal) >= 1 && edge.limits_face_at(face, c.p, there.distance);
+  });
+}
+
 /// True if the foot of a place that is now beyond the borders will be within them after the step without contact: so a
 /// wall that comes to a cone's tip from the side is met before it is inside. What is behind the face's surface already
-/// comes to it through another face.
-bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p, double distance) {
-  if (-distance > pair.motion.overlap + pair.motion.thresholds.touching) return false;
+/// comes to it through another face, and what lies on another one does not fall beside it.
+bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Candidate& c) {
+  if (-c.at.distance > pair.motion.overlap + pair.motion.thresholds.touching) return false;
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
-  const Vector3d way = pair.moved(p, pair.motion.free_twist);
+  const Vector3d way = pair.moved(c.p, pair.motion.free_twist);
   const double reach = pair.base.faces[face].trim->reach_outside();
   if (way.squaredNorm() < reach * reach) return false;
-  const Vector3d after = p + way;
+  const Vector3d after = c.p + way;
   const SurfaceAt there = surface.at(after);
-  return is_on_face(pair.base, face, after - there.distance * there.normal);
+  const Vector3d foot = after - there.distance * there.normal;
+  return is_on_face(pair.base, face, foot) && !lies_across(pair, face, foot, c);
 }
 
 /// True if a place behind a face came in through another one, the wall: on the straight way to its foot it enters
@@ -163,9 +180,13 @@ enum class Slide : std::uint8_t { over, past, free };
 Slide slide_past(const BodyPair& pair, const Candidate& c, const SurfaceAt& there) {
   constexpr double kRounding = 1e-9;  // m
   const double coincident = pair.motion.thresholds.coincident;
+  if (there.distance < -pair.base.options.beyond_end) return Slide::free;  // that edge is far away
   if (there.distance < -pair.motion.overlap - kRounding) return Slide::over;
+  const bool is_pressed =
+      there.distance <= 0 ||
+      (there.distance < kRounding && there.distance + there.normal.dot(pair.moved(c.p, pair.motion.free_twist)) <= 0);
   const bool is_pushed =
-      there.distance <= 0 && c.at.distance > -coincident && pair.normal_cone_weight(c.sample, there.normal) >= 1;
+      is_pressed && c.at.distance > -coincident && pair.normal_cone_weight(c.sample, there.normal) >= 1;
   return is_pushed ? Slide::past : Slide::free;
 }
 
@@ -264,7 +285,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
   }
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);
-  if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c.p, c.at.distance);
+  if (answer.where == Trim::Where::outside) return comes_onto_face(pair, face, c);
   if (c.at.distance < -kThinnest && comes_through_another(pair, c, face, foot)) return false;
   Slide slides = Slide::free;
   // Beside the border the foot is off the face: only an edge that it lies beyond can say that the face owns it.

@@ -65,6 +65,11 @@ const Placement& RelativeMotion::placed_once(std::optional<Placement>& placement
   return *placement;
 }
 
+Placement RelativeMotion::after_part(double part) const {
+  return placement(exact::after(*of_mover, of_mover->taken(), part * dt),
+                   exact::after(*of_base, of_base->taken(), part * dt));
+}
+
 ExactLink::ExactLink(std::shared_ptr<const ExactBody> first, std::shared_ptr<const ExactBody> second,
                      std::size_t rows_max, const SearchThresholds& thresholds)
     : first_(std::move(first)), second_(std::move(second)), rows_(rows_max), thresholds_(thresholds) {

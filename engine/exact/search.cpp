@@ -321,7 +321,7 @@ void Search::add_group_ends(const PlacedFeature& placed, const CurveFromSurface&
       left -= share;
       end.weight *= share;
     }
-    add_row(placed, end, count, face, curving(pair_, placed, end, pair_.base.faces[face], 0));
+    add_row(placed, end, count, face, curving(pair_, placed, end, face, 0));
   }
   best.weight *= left;
 }
@@ -346,7 +346,7 @@ bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) co
 
 /// Adds the row of a candidate that touches the face's surface, not a plane beside it.
 void Search::add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
-  add_row(placed, c, count, face, curving(pair_, placed, c, pair_.base.faces[face], count));
+  add_row(placed, c, count, face, curving(pair_, placed, c, face, count));
 }
 
 /// Adds the row of a candidate that stands for `count` segments.

@@ -35,6 +35,8 @@ struct RelativeMotion {
   /// Where the mover is after the step with free_twist, and with `during`. Few pairs ask, some often.
   [[nodiscard]] const Placement& ahead() const { return placed_once(ahead_, of_mover->twist, of_base->twist); }
   [[nodiscard]] const Placement& after() const { return placed_once(after_, of_mover->taken(), of_base->taken()); }
+  /// Likewise after a part of the step, from 0 to 1.
+  [[nodiscard]] Placement after_part(double part) const;
 
  private:
   const Placement& placed_once(std::optional<Placement>& placement, const Twist& mover, const Twist& base) const;

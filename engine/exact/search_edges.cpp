@@ -86,8 +86,9 @@ void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlo
       if (crosses && c.gap_ahead < best.gap_ahead) best = c;
     }
     if (best.gap_ahead != kOutOfReach)
-      add_row(placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e,
-              best.comes_down ? 0 : curving_of_edges(pair_, placed, best, edge));
+      add_row(
+          placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e,
+          best.comes_down ? passing_of_edges(pair_, placed_, best, edge) : curving_of_edges(pair_, placed, best, edge));
   }
 }
 
@@ -110,7 +111,7 @@ bool Search::cross_segment(When when, const ExactEdge& edge, std::uint32_t count
     const RelativeMotion& motion = pair_.motion;
     c.p = placed_.point(c.place);
     c.gap -= c.normal.dot(pair_.moved(c.p, when == When::ahead ? motion.free_twist : motion.during));
-    if (!(c.gap > motion.thresholds.coincident)) return false;  // what lies is held by what it lies on
+    if (!(c.gap > motion.thresholds.coincident) || lies_already(pair_, placed_, edge, c)) return false;
   }
   if (!is_near(placed_, count, c)) return false;
   c.weight *= share_of_crossing(c, 2 * placed_.feature->half_width * count);

@@ -1,0 +1,40 @@
+"""What slides over the seam of two tables of one height does not feel it. Judged from recorded poses and velocities."""
+import unittest
+import zlib
+
+import numpy as np
+
+from scene_test import LONG, SceneTest
+
+FLAT = ("box", "cross", "gear", "prism", "stool", "bridge", "disc", "tube", "cone")
+# Of these a gap of 1 mm is felt: they dip into it. Wanted of all: 1e-3. Not among them: "fillet", that may still be
+# stopped at a seam.
+LOSES = {"ball": 1e-3, "torus": 5e-3, "roll": 0.02}
+HOPS = {"ball": 2e-6, "torus": 2e-5, "roll": 2e-4}  # m
+
+
+class SeamsTest(SceneTest):
+    def settings(self, kind, seed):
+        draw = np.random.default_rng([zlib.crc32(kind.encode()), seed])
+        rolls = kind in ("roll", "ball")  # which a spin would turn out of its way, or roll
+        return {"kind": kind, "r": draw.uniform(0.004, 0.02), "v": draw.uniform(0.05, 1), "n": draw.integers(3, 10),
+                "gap": draw.choice([0, 0, 1e-9, 1e-6, 1e-6 if kind in LOSES else 1e-3]),
+                "turn": draw.choice([0, draw.uniform(-0.7, 0.7)]), "yaw": draw.choice([0, draw.uniform(0, 6.28)]),
+                "spin": 0 if rolls else draw.choice([0, draw.uniform(-5, 5)]), "timestep": draw.choice([5e-4, 1e-3, 2e-3])}
+
+    def test_are_not_felt(self):
+        for kind in FLAT + tuple(LOSES):
+            for seed in range(40 if LONG else 4):
+                settings = self.settings(kind, seed)
+                with self.subTest(**settings):
+                    body = self.run_scene("seam.lua", "body", **settings)
+                    speed = np.linalg.norm(body.twist[:, :2], axis=1)
+                    self.assertGreater(body.pose[-1, 0], 0)  # it has come over
+                    self.assertLess(abs(speed[-1] / speed[0] - 1), LOSES.get(kind, 1e-3))
+                    height = body.pose[:, 2] - body.pose[0, 2]
+                    self.assertLess(height.max(), HOPS.get(kind, 1e-6))
+                    self.assertGreater(height.min(), -1e-6)
+
+
+if __name__ == "__main__":
+    unittest.main()
