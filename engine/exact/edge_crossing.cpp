@@ -256,7 +256,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEd
   };
   const OwnershipRule here = rule_at(near[0]);
   const OwnershipRule by_motion = here == OwnershipRule::by_position ? rule_at(near[1]) : here;
-  const bool is_of_lines = !placed.is_arc() && a.kind() == SurfaceKind::plane && b.kind() == SurfaceKind::plane;
+  const bool is_of_rim_and_line = placed.is_arc() == (edge.extent == ExactEdge::Extent::line);
   const auto crosses_by = [&](OwnershipRule rule, Candidate& crossed) {
     return cross_edge_by(ComparedFaces(pair, edge, rule), pair, placed, edge, near, crossed);
   };
@@ -264,8 +264,8 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEd
   if (!crosses_by(OwnershipRule::by_position, crossed)) {
     if (!crosses_by(by_motion, moved)) return false;
     crossed = moved;
-  } else if (!is_of_lines && crossed.at.distance > pair.motion.thresholds.coincident) {
-    // Outside of both faces: what is round passes beside the edge if by no motion it meets it.
+  } else if (is_of_rim_and_line && crossed.at.distance > pair.motion.thresholds.coincident) {
+    // Outside of both faces: a rim passes beside a straight edge if by no motion it meets it.
     if (!crosses_by(by_motion, moved) && !crosses_by(OwnershipRule::by_last_motion, moved)) return false;
   }
   c = crossed;
