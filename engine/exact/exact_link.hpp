@@ -29,6 +29,10 @@
 //   Before contact  A place outside of both faces of a convex edge is owned by the face that it would pass last
 //                   within the step. So the plane around a hole does not stop a pin that enters the hole beside its
 //                   rim. A place that lies on one of the two faces and slides is judged by its last velocity.
+//   Passing by      The edge of a body that is flush with the one that carries the mover lies in front of it and below.
+//                   What slides or rolls over it lies on another face already, or is outside of both faces of the edge
+//                   by every motion, or comes to the end of the step without touching: then there is no row, or one
+//                   that does not act (curving.hpp).
 //   After the step  Edges that do not cross now may do so after the step: one slopes the same way from both faces of
 //                   the other, or is beside both. Then the crossing is looked for where the motion without contact
 //                   ends, and where the assumed one does. Its row has the gap from which that motion leads to it.
