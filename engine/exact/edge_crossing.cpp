@@ -89,8 +89,8 @@ bool lies_with_its_end(const BodyPair& pair, const PlacedFeature& placed, const 
   const bool leaves_a = std::abs(slope_a) > std::abs(slope_b);
   const double slope = leaves_a ? slope_a : slope_b;
   const SurfaceAt& at = leaves_a ? a : b;
-  if (placed.is_arc() || pair.base.faces[edge.faces[leaves_a ? 0 : 1]].surface->kind() != SurfaceKind::plane)
-    return false;
+  const std::uint32_t face = edge.faces[leaves_a ? 0 : 1];
+  if (placed.is_arc() || pair.base.faces[face].surface->kind() != SurfaceKind::plane) return false;
   const Feature& feature = *placed.feature;
   const std::vector<double>& middle = pair.mover.sample_c;
   const double end =
@@ -229,20 +229,11 @@ bool lies_already(const BodyPair& pair, const PlacedFeature& placed, const Exact
   const std::array<SurfaceAt, 2> at{pair.base.faces[edge.faces[0]].surface->at(c.p),
                                     pair.base.faces[edge.faces[1]].surface->at(c.p)};
   if (lies_with_its_end(pair, placed, c, edge, at[0], at[1])) return true;
-  for (const std::size_t side : {0, 1}) {
-    const ExactFace& face = pair.base.faces[edge.faces[side]];
-    for (const std::uint32_t e : face.trim->find(*face.surface, c.p - at[side].distance * at[side].normal).edges) {
-      const ExactEdge& border = pair.base.edges[e];
-      const std::uint32_t third = face_across(border, edge.faces[side]);
-      if (border.convexity != Convexity::convex || third == edge.faces[1 - side]) continue;
-      const SurfaceAt there = pair.base.faces[third].surface->at(c.p);
-      if (std::abs(there.distance) < pair.motion.thresholds.coincident &&
-          pair.normal_cone_weight(c.sample, there.normal) >= 1 &&
-          border.limits_face_at(edge.faces[side], c.p, there.distance))
-        return true;
-    }
-  }
-  return false;
+  const auto lies_beside = [&](std::size_t side) {
+    const Vector3d foot = c.p - at[side].distance * at[side].normal;
+    return lies_across(pair, edge.faces[side], foot, c, edge.faces[1 - side]);
+  };
+  return lies_beside(0) || lies_beside(1);
 }
 
 bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,

@@ -91,20 +91,6 @@ bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, con
          !ends_at_concave_corner(pair, placed, c);
 }
 
-/// True if a place near a point of a face lies on another one, across a convex edge, that can push it: it will slide
-/// on.
-bool lies_across(const BodyPair& pair, std::uint32_t face, const Vector3d& foot, const Candidate& c) {
-  const auto& faces = pair.base.faces;
-  const Trim::Answer answer = faces[face].trim->find(*faces[face].surface, foot);
-  return std::any_of(answer.edges.begin(), answer.edges.end(), [&](std::uint32_t e) {
-    const ExactEdge& edge = pair.base.edges[e];
-    if (edge.convexity != Convexity::convex) return false;
-    const SurfaceAt there = faces[face_across(edge, face)].surface->at(c.p);
-    return std::abs(there.distance) < pair.motion.thresholds.coincident &&
-           pair.normal_cone_weight(c.sample, there.normal) >= 1 && edge.limits_face_at(face, c.p, there.distance);
-  });
-}
-
 /// True if the foot of a place that is now beyond the borders will be within them after the step without contact: so a
 /// wall that comes to a cone's tip from the side is met before it is inside. What is behind the face's surface already
 /// comes to it through another face, and what lies on another one does not fall beside it.
@@ -117,7 +103,7 @@ bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Candidate& 
   const Vector3d after = c.p + way;
   const SurfaceAt there = surface.at(after);
   const Vector3d foot = after - there.distance * there.normal;
-  return is_on_face(pair.base, face, foot) && !lies_across(pair, face, foot, c);
+  return is_on_face(pair.base, face, foot) && !lies_across(pair, face, foot, c, kNoFace);
 }
 
 /// True if a place behind a face came in through another one, the wall: on the straight way to its foot it enters
@@ -266,6 +252,20 @@ ComparedDistances compared_distances(const BodyPair& pair, const Vector3d& p, co
 bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other, bool wins_tie) {
   const ComparedDistances at = compared_distances(pair, p, mine, other);
   return at.mine > at.other || (at.mine == at.other && wins_tie);
+}
+
+bool lies_across(const BodyPair& pair, std::uint32_t face, const Vector3d& foot, const Candidate& c,
+                 std::uint32_t except) {
+  const auto& faces = pair.base.faces;
+  const Trim::Answer answer = faces[face].trim->find(*faces[face].surface, foot);
+  return std::any_of(answer.edges.begin(), answer.edges.end(), [&](std::uint32_t e) {
+    const ExactEdge& edge = pair.base.edges[e];
+    const std::uint32_t other = face_across(edge, face);
+    if (edge.convexity != Convexity::convex || other == except) return false;
+    const SurfaceAt there = faces[other].surface->at(c.p);
+    return std::abs(there.distance) < pair.motion.thresholds.coincident &&
+           pair.normal_cone_weight(c.sample, there.normal) >= 1 && edge.limits_face_at(face, c.p, there.distance);
+  });
 }
 
 bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::uint32_t face, Candidate& c) {

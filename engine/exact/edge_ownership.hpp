@@ -49,6 +49,11 @@ struct ComparedDistances {
 [[nodiscard]] bool owns_point(const BodyPair& pair, const Vector3d& p, const SurfaceAt& mine, const SurfaceAt& other,
                               bool wins_tie);
 
+/// True if a place lies on a face that can push it, across a convex edge of `face` near `foot`, a point of that: it
+/// will slide on, and not fall beside it. @param except  a face that does not count; kNoFace: all do
+[[nodiscard]] bool lies_across(const BodyPair& pair, std::uint32_t face, const Vector3d& foot, const Candidate& c,
+                               std::uint32_t except);
+
 /// True if the candidate becomes a row against `face` of the base: its foot lies within the face's trim, and no sharp
 /// edge gives the point to another face. Sets the candidate's weight.
 /// @pre place, point, gap and normal of `c` are those against `face`, which is one of the base's

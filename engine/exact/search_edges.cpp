@@ -85,10 +85,10 @@ void Search::cross_block(When when, const PlacedFeature& placed, const SampleBlo
                                       (pair_.motion.is_found_again && cross_segment(When::after, edge, size, c))));
       if (crosses && c.gap_ahead < best.gap_ahead) best = c;
     }
-    if (best.gap_ahead != kOutOfReach)
-      add_row(
-          placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e,
-          best.comes_down ? passing_of_edges(pair_, placed_, best, edge) : curving_of_edges(pair_, placed, best, edge));
+    if (best.gap_ahead == kOutOfReach) continue;
+    const double curves =
+        best.comes_down ? passing_of_edges(pair_, placed_, best, edge) : curving_of_edges(pair_, placed, best, edge);
+    add_row(placed, best, size, static_cast<std::uint32_t>(pair.base.faces.size()) + e, curves);
   }
 }
 

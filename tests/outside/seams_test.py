@@ -35,6 +35,16 @@ class SeamsTest(SceneTest):
                     self.assertLess(height.max(), HOPS.get(kind, 1e-6))
                     self.assertGreater(height.min(), -1e-6)
 
+    def test_one_table_has_none(self):
+        """Of the scene itself: what is lost at a seam is lost to the seam. The grip of what lies takes 1e-6 of its weight."""
+        for kind in FLAT + tuple(LOSES) + ("fillet",):
+            settings = self.settings(kind, 0)
+            with self.subTest(**settings):
+                body = self.run_scene("seam.lua", "body", one="true", **settings)
+                speed = np.linalg.norm(body.twist[:, :2], axis=1)
+                self.assertLess(abs(speed[-1] / speed[0] - 1), 1e-4)
+                self.assertLess(np.abs(body.pose[:, 2] - body.pose[0, 2]).max(), 1e-8)
+
 
 if __name__ == "__main__":
     unittest.main()
