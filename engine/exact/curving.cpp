@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/exact/edge_crossing.hpp"
-#include "engine/exact/edge_ownership.hpp"
 
 namespace verisim::exact {
 namespace {
@@ -58,23 +57,8 @@ Place closest_of(const BodyPair& pair, const PlacedFeature& placed, const Analyt
                        placed.feature->radius_slope);
 }
 
-/// True if a place that the bodies come to within the step is the face's: it lies on it, and no convex edge gives it to
-/// another one.
-bool is_of_face(const BodyPair& pair, std::uint32_t face, const Vector3d& p) {
-  const ExactFace& mine = pair.base.faces[face];
-  const SurfaceAt at = mine.surface->at(p);
-  const Trim::Answer answer = mine.trim->find(*mine.surface, p - at.distance * at.normal);
-  if (answer.where == Trim::Where::outside) return false;
-  return std::none_of(answer.edges.begin(), answer.edges.end(), [&](std::uint32_t e) {
-    const ExactEdge& edge = pair.base.edges[e];
-    if (edge.convexity != Convexity::convex) return false;
-    const double other = pair.base.faces[face_across(edge, face)].surface->at(p).distance;
-    return other > at.distance && edge.limits_face_at(face, p, other);
-  });
-}
-
 /// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
-/// If the group, of `count` segments, is nearer by more than what touches anyway, and the face's, that of the group.
+/// If the group, of `count` segments, is nearer by more than what touches anyway, that of the group.
 SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t face,
                       std::uint32_t count) {
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
@@ -86,10 +70,8 @@ SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const C
   if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
   SurfaceAt of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
   if (count == 1) return of_segment;
-  const Place place = closest_of(pair, placed, surface, c.group, count);
-  SurfaceAt of_group = gap_at(place);
-  if (of_group.distance > of_segment.distance - pair.motion.thresholds.touching) return of_segment;
-  return is_of_face(pair, face, placed.point(place)) ? of_group : of_segment;
+  SurfaceAt of_group = gap_at(closest_of(pair, placed, surface, c.group, count));
+  return of_group.distance < of_segment.distance - pair.motion.thresholds.touching ? of_group : of_segment;
 }
 
 double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& after,

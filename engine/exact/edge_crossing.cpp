@@ -255,7 +255,7 @@ bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEd
   if (!crosses_by(OwnershipRule::by_position, crossed)) {
     if (!crosses_by(by_motion, moved)) return false;
     crossed = moved;
-  } else if (is_of_rim_and_line && crossed.at.distance > pair.motion.thresholds.coincident) {
+  } else if (is_of_rim_and_line && crossed.at.distance > 0) {
     // Outside of both faces: a rim passes beside a straight edge if by no motion it meets it.
     if (!crosses_by(by_motion, moved) && !crosses_by(OwnershipRule::by_last_motion, moved)) return false;
   }

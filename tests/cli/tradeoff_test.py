@@ -123,9 +123,12 @@ class Tradeoff(ProgramTest):
 
     @unittest.skipIf(SANITIZED, "test_the_truth_has_its_order_of_convergence runs the same code")
     def test_a_repetition_whose_force_hangs_on_the_step_is_named_with_its_order(self):
-        # With this seed the pin's rim is caught at the hole's edge: two blows within a step.
-        done = self.succeed("tradeoff", os.path.join(SOURCE, "scenarios", "peg_in_hole.lua"), "--set", "clearance=1mm",
-                            "--vary", "hybrid=restore,exact", "--duration", 0.6, "--repeat", 1, "--seed", 6)
+        # Where the pin's rim is caught at the hole's edge two blows follow each other within a step: of these seeds some.
+        for seed in range(9, 25):
+            done = self.succeed("tradeoff", os.path.join(SOURCE, "scenarios", "peg_in_hole.lua"), "--set", "clearance=1mm",
+                                "--vary", "hybrid=restore,exact", "--duration", 0.6, "--repeat", 1, "--seed", seed)
+            if "converges in the step in 1 of 1" not in done.stdout:
+                break
         self.assertRegex(done.stdout, r"in repetition 0 \(order -?\d+\.\d\) it does not: what happens there hangs on the step")
 
     @unittest.skipIf(SANITIZED, "bounds_test and Auto below run the same code")
