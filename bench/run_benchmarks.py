@@ -60,6 +60,8 @@ def main():
             result = json.loads(text)
         whole["context"] = whole["context"] or result["context"]
         whole["benchmarks"] += [row for row in result["benchmarks"] if row.get("run_type") != "aggregate"]
+    if not whole["benchmarks"] and not missed:
+        sys.exit(f"error: no benchmark's name has VERISIM_BENCH_FILTER={os.environ.get('VERISIM_BENCH_FILTER', '.')} in it; {out} is not written")
     whole["context"].update(context)
     pathlib.Path(out).write_text(json.dumps(whole, indent=1) + "\n")
     names = {row["run_name"] for row in whole["benchmarks"]}

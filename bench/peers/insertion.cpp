@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/pinned_math.hpp"
 
@@ -47,11 +48,11 @@ std::vector<Vector3d> wedge(int sector, const Cut& cut) {
   return vertices;
 }
 
-double overlap_with_circle(const Pose& X, double radius, double chamfer) {
+double depth_in_circle(const Pose& X, double radius, double chamfer) {
   constexpr int kAngles = 720;
   const Matrix3d R = X.rotation.toRotationMatrix();
   const double top = kBlockHeight / 2 - chamfer;
-  double deepest = 0;
+  double deepest = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < kAngles; ++i) {
     const double angle = 2 * pinned::kPi * i / kAngles;
     const Vector3d ring(std::cos(angle), std::sin(angle), 0);
@@ -66,6 +67,10 @@ double overlap_with_circle(const Pose& X, double radius, double chamfer) {
     }
   }
   return deepest;
+}
+
+double overlap_with_circle(const Pose& X, double radius, double chamfer) {
+  return std::max(0.0, depth_in_circle(X, radius, chamfer));
 }
 
 double overlap_with_polygon(const Pose& X, double radius, double chamfer) {

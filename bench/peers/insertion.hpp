@@ -45,8 +45,11 @@ struct Mesh {
 /// The block with a polygon of so many sides as its hole, closed. @pre sides is a multiple of 8
 [[nodiscard]] Mesh block_mesh(double chamfer, int sides = kWedges);
 
-/// Deepest overlap of the pin's side with the round hole below its chamfer [m], at many angles: the pin's end circles
-/// against the wall, the wall's end circles against the pin's side.
+/// How deep the pin's side is in the wall of the round hole below its chamfer [m], at many angles: the pin's end
+/// circles against the wall, the wall's end circles against the pin's side. Below 0: minus the gap. @pre an end is in
+/// the hole
+[[nodiscard]] double depth_in_circle(const Pose& X, double radius, double chamfer);
+/// The same, 0 where there is no overlap.
 [[nodiscard]] double overlap_with_circle(const Pose& X, double radius, double chamfer);
 /// The same with the wedges' inner faces: the pin's end circles against the faces, the faces' lower and upper edges
 /// against the pin's side.

@@ -7,8 +7,9 @@
 #include <tuple>
 
 #include "bench/peg_scene.hpp"
-#include "engine/base/error.hpp"
+#include "engine/base/pinned_math.hpp"
 #include "engine/base/quantile.hpp"
+#include "engine/base/random.hpp"
 
 namespace verisim::peers {
 namespace {
@@ -124,12 +125,32 @@ void push_again(const std::vector<Engine>& engines, std::vector<std::vector<Push
     }
 }
 
-Poses recorded_poses() {
+namespace {
+
+Poses drawn_poses() {
+  constexpr std::uint64_t kCount = 1000;
+  constexpr double kBeside = 0.0075, kTilt = 0.5 * pinned::kPi / 180;
+  Poses poses;
+  for (std::uint64_t i = 0; i < kCount; ++i) {
+    const RandomStream draw(i, "pose of a pin in a hole");
+    const double towards = 2 * pinned::kPi * draw.uniform(0), about = 2 * pinned::kPi * draw.uniform(1);
+    const Quaterniond turned(Eigen::AngleAxisd(kTilt * draw.uniform(2), Vector3d(std::cos(about), std::sin(about), 0)));
+    const double end = (draw.uniform(3) - 0.5) * 0.9 * kBlockHeight;  // z of the pin's lower end
+    const double beside = kBeside * draw.uniform(4);
+    const Vector3d lower(beside * std::cos(towards), beside * std::sin(towards), end);
+    poses.X_AB.push_back({lower + turned * Vector3d(0, 0, kPinLength / 2), turned});
+    poses.depth.push_back(depth_in_circle(poses.X_AB.back(), bench::kPinRadius, 0));
+  }
+  return poses;
+}
+
+}  // namespace
+
+Poses poses_in_hole() {
   bench::PegPoses recorded = bench::load_peg_poses();
-  if (recorded.X_AB.empty())
-    fail(ErrorKind::input, "{}: not there, or no pose in it; put it beside the sources",
-         paths::in_shared_reference("peers/peg_poses.csv"));
-  return {std::move(recorded.X_AB), std::move(recorded.depth), bench::kHoleRadius - bench::kPinRadius};
+  Poses poses = recorded.X_AB.empty() ? drawn_poses() : Poses{std::move(recorded.X_AB), std::move(recorded.depth)};
+  poses.clearance = bench::kHoleRadius - bench::kPinRadius;
+  return poses;
 }
 
 namespace {

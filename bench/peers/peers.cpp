@@ -1,5 +1,5 @@
 // Which engine is faster, and which is more accurate, in one run: this project's methods, MuJoCo, Bullet, ODE and FCL
-// push the same pin through the same hole and are asked for contacts at the same recorded poses, each under every
+// push the same pin through the same hole and are asked for contacts at the same poses, each under every
 // setting of a grid over its own dials, and of each the best is told. `verisim tradeoff --peers` runs this.
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -113,7 +113,7 @@ int run(const Options& o) {
   const ProgressLine line(!o.quiet);
   const Progress say = [&](const std::string& text) { line.say(text.substr(0, 60)); };
   const std::vector<Engine> engines = all_engines(o.quick);
-  const Poses poses = recorded_poses();
+  const Poses poses = poses_in_hole();
   std::vector<std::vector<Pushed>> pushed = push_all(engines, insertions(o.quick), say);
   push_again(engines, pushed, o.quick ? 1 : 3, say);
   const std::vector<std::vector<Found>> found = find_all(engines, poses, o.quick ? 2 : 7, say);

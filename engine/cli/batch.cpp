@@ -445,9 +445,7 @@ void add_work_options(CLI::App& command, BatchOptions& o) {
       "Does again what has no answer in the folder: runs that were killed, crashed, or had too little time or "
       "memory");
   command.add_flag("--measure", o.measure, "The true overlap of each run, too (as replay --measure)");
-  command.add_option("--threads", o.threads, "Threads of each run (same bits for any number)")
-      ->check(CLI::Range(1, 256));
-  command.add_option("--simd", o.simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
+  add_speed_options(command, o.threads, o.simd);
   add_cache_option(command, o.no_cache);
   command.add_flag("--json", o.json, "One JSON object on stdout, all else on stderr");
   command.add_flag("--quiet", o.quiet, "No progress, no failures as they come, no summary");

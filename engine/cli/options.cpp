@@ -47,6 +47,11 @@ CLI::Validator seconds() {
   return CLI::Validator(check, "SECONDS");
 }
 
+void add_speed_options(CLI::App& command, unsigned& threads, std::string& simd) {
+  command.add_option("--threads", threads, "Threads of a run (same bits for any number)")->check(CLI::Range(1, 256));
+  command.add_option("--simd", simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
+}
+
 void add_cache_option(CLI::App& command, bool& no_cache) {
   command.add_flag("--no-cache", no_cache,
                    "Prepare all parts anew; without it those that a run prepared before are read from VERISIM_CACHE "
@@ -66,8 +71,7 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_option("--duration", o.duration, "Simulated seconds")->check(seconds());
   add_seed_option(
       command, [&o](std::uint64_t seed) { o.seed = seed; }, "Seed of every random stream (0 to 2^64 - 1)");
-  command.add_option("--threads", o.threads, "Threads (same bits for any number)")->check(CLI::Range(1, 256));
-  command.add_option("--simd", o.simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
+  add_speed_options(command, o.threads, o.simd);
   command.add_flag("--realtime", o.realtime, "Pace by the wall clock, with real-time priority if the system grants it");
   command.add_flag("--json", o.json, "One JSON object on stdout, all else on stderr");
   command.add_flag("--quiet", o.quiet, "No progress, no summary");

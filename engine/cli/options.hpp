@@ -32,6 +32,9 @@ struct SimulateOptions {
   bool no_cache = false;
 };
 
+/// --threads and --simd. They change how fast a run is and none of its bits.
+void add_speed_options(CLI::App& command, unsigned& threads, std::string& simd);
+
 /// --no-cache.
 void add_cache_option(CLI::App& command, bool& no_cache);
 

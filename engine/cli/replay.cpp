@@ -168,8 +168,7 @@ void add_replay(CLI::App& app, int& exit_code) {
       "and the shapes alone, beside the recorded penetration: a line per pair with the frames in which "
       "either was largest and in which they differ most; --json has every frame. Meshes are measured twice: between "
       "their triangles and between the surfaces that their faces were recovered as");
-  command->add_option("--threads", options->threads, "Threads (same bits for any number)")->check(CLI::Range(1, 256));
-  command->add_option("--simd", options->simd, "SIMD target (same bits)");
+  add_speed_options(*command, options->threads, options->simd);
   command->add_flag("--json", options->json, "One JSON object on stdout");
   command->add_flag("--quiet", options->quiet, "Say nothing");
   command->footer(

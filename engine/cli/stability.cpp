@@ -12,6 +12,7 @@
 #include "engine/cli/options.hpp"
 #include "engine/cli/scenarios_folder.hpp"
 #include "engine/cli/stability_output.hpp"
+#include "engine/contact/query.hpp"
 #include "engine/session/interrupts.hpp"
 #include "engine/session/json_text.hpp"
 #include "engine/session/prepared_parts.hpp"
@@ -40,9 +41,11 @@ constexpr double kShort = 2;  // s, of a shipped scenario unless all is asked fo
 struct StabilityOptions {
   std::string scenario, scenarios;
   OutOptions out;
-  std::vector<std::string> only, sets;
+  std::vector<std::string> only, sets, binds;
   std::optional<double> duration;
-  unsigned jobs = 0;
+  std::optional<std::uint64_t> seed;
+  unsigned jobs = 0, threads = 1;
+  std::string simd;
   bool all = false;
   bool json = false;
   bool quiet = false;
@@ -58,16 +61,18 @@ ScenarioOptions ledger_options(const StabilityOptions& o, const std::string& pat
   ScenarioOptions options;
   options.path = path;
   options.sets = split_pairs("--set", o.sets);
+  options.binds = split_pairs("--bind", o.binds);
+  options.seed = o.seed;
   options.duration = o.duration;
   if (o.scenario.empty() && !o.all && !o.duration) options.duration = kShort;
   return options;
 }
 
 /// The energy of a scenario's run.
-Row ledger_of(const ScenarioOptions& options) {
+Row ledger_of(const ScenarioOptions& options, unsigned threads) {
   const fs::path path(options.path);
   std::unique_ptr<stability::EnergyAudit> audit;
-  Session session = open_session(options, inputs_of(options), 1, true,
+  Session session = open_session(options, inputs_of(options), threads, true,
                                  [&](const Scene& scene) { audit = std::make_unique<stability::EnergyAudit>(scene); });
   Simulation& simulation = *session.simulation;
   audit->start(simulation);
@@ -100,7 +105,7 @@ void add_ledgers(const StabilityOptions& o, std::vector<Task>& tasks) {
   }
   for (const std::string& path : paths) {
     tasks.push_back({"", RowKind::ledger, fs::path(path).filename().string(), false,
-                     [options = ledger_options(o, path)] { return ledger_of(options); }});
+                     [options = ledger_options(o, path), threads = o.threads] { return ledger_of(options, threads); }});
   }
 }
 
@@ -157,6 +162,9 @@ void check_ledgers_wanted(const StabilityOptions& o) {
   if (o.only.empty() || std::find(o.only.begin(), o.only.end(), "ledgers") != o.only.end()) return;
   for (const auto& [is_said, what] : {std::pair{!o.scenario.empty(), "SCENARIO"},
                                       {!o.sets.empty(), "--set"},
+                                      {!o.binds.empty(), "--bind"},
+                                      {o.seed.has_value(), "--seed"},
+                                      {o.threads != 1, "--threads"},
                                       {o.duration.has_value(), "--duration"},
                                       {!o.scenarios.empty(), "--scenarios"}})
     if (is_said) fail(ErrorKind::usage, "{} is for ledgers, and --only leaves them out; add --only ledgers", what);
@@ -171,6 +179,7 @@ void check_scenario(const StabilityOptions& o, const std::vector<Task>& tasks) {
 }
 
 int run_stability(const StabilityOptions& o) {
+  use_simd_target(o.simd);
   check_ledgers_wanted(o);
   if (!o.out.path.empty()) check_folder(o.out.path, o.out.force);
   std::vector<Task> tasks = tasks_of(o);
@@ -196,11 +205,15 @@ void add_stability(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember(parts));
   command->add_option("--set", o->sets, "Scenario parameter, KEY=VALUE (repeatable)")->allow_extra_args(false);
+  command->add_option("--bind", o->binds, "NAME=SOURCE, as in verisim run (repeatable)")->allow_extra_args(false);
+  add_seed_option(
+      *command, [=](std::uint64_t seed) { o->seed = seed; }, "Seed of each scenario (default: its own)");
   command->add_option("--duration", o->duration, "Simulated time of each scenario, s (default: 2 of a shipped one)")
       ->check(seconds());
   command->add_option("--scenarios", o->scenarios, "Folder of the shipped scenarios (else found beside the program)");
   command->add_option("--jobs", o->jobs, "Rows computed at once (default: all cores); the same bits")
       ->check(CLI::Range(1U, 4096U));
+  add_speed_options(*command, o->threads, o->simd);
   command->add_flag("--long", o->all, "All rows, scenarios to their end: many minutes");
   command->add_flag("--json", o->json, "One JSON object on stdout");
   command->add_flag("--quiet", o->quiet, "No progress");

@@ -141,10 +141,10 @@ void check_scenario(const TradeoffOptions& o) {
   if (!o.peers) fail(ErrorKind::usage, "SCENARIO is required, but with --peers; see verisim tradeoff --help");
   const SweepRequest& s = o.sweep;
   for (const bool asked : {!s.vary.empty(), !s.truth.empty(), !s.sets.empty(), !s.binds.empty(), s.duration.has_value(),
-                           !o.budget.empty(), !o.error.empty(), !o.by.empty()})
+                           s.threads != 1, !o.budget.empty(), !o.error.empty(), !o.by.empty()})
     if (asked)
       fail(ErrorKind::usage,
-           "--vary, --truth, --set, --bind, --duration, --budget, --error and --by are of a SCENARIO; "
+           "--vary, --truth, --set, --bind, --duration, --threads, --budget, --error and --by are of a SCENARIO; "
            "name it, or leave them out");
 }
 
@@ -223,7 +223,7 @@ void add_tradeoff(CLI::App& app, int& exit_code) {
   command->add_option("--by", o->by,
                       "Error of the front and of --error: wrench, force, force_max, torque, torque_max, position, "
                       "rotation, overlap, work, flips (default: force, or what the unit of --error says)");
-  command->add_option("--simd", o->simd, "SIMD target: scalar or any that 'verisim doctor' lists (same bits)");
+  add_speed_options(*command, o->sweep.threads, o->simd);
   auto* peers = command->add_flag("--peers", o->peers,
                                   "MuJoCo, Bullet, ODE and FCL, each at its best of a search, beside this project's "
                                   "methods: the same poses, the same driven insertions (needs verisim-peers)");

@@ -56,7 +56,7 @@ Session open_setting(const TrialSetting& setting, const std::function<void(Scene
   const ScenarioOptions& scenario = setting.scenario;
   auto inputs = std::make_unique<Inputs>(
       Inputs::live(std::filesystem::path(scenario.path).parent_path().string(), named_paths(scenario), setting.store));
-  return open_session(scenario, std::move(inputs), 1, true, look);
+  return open_session(scenario, std::move(inputs), setting.threads, true, look);
 }
 
 /// Error unless it came to its end.

@@ -19,6 +19,7 @@ namespace verisim::cli {
 struct TrialSetting {
   ScenarioOptions scenario;  ///< with the dials' --set
   std::shared_ptr<PreparedStore> store = nullptr;
+  unsigned threads = 1;
 };
 
 /// Where the virtual handle of each device was, in the order of the scene's devices.

@@ -121,6 +121,7 @@ Sweep::Sweep(const SweepRequest& request) : request_(request) {
   else
     say_where_truth_is_not_finer(truth_values);
   say_what_the_truth_has_of_its_own();
+  if (request.threads != 1) notes_.push_back(fmt::format("times are of runs of {} threads each", request.threads));
   say_what_is_not_reached();
 }
 
@@ -223,7 +224,7 @@ void Sweep::say_what_the_truth_has_of_its_own() {
 }
 
 TrialSetting Sweep::setting_of(std::size_t setting, std::uint64_t repetition) const {
-  TrialSetting trial{.scenario = scenario_, .store = store_};
+  TrialSetting trial{.scenario = scenario_, .store = store_, .threads = request_.threads};
   trial.scenario.seed = batch::seed_of_repetition(request_.seed, repetition);
   const batch::Point point = design_.point(setting);
   const std::vector<std::string> keys = design_.keys();
@@ -232,7 +233,7 @@ TrialSetting Sweep::setting_of(std::size_t setting, std::uint64_t repetition) co
 }
 
 TrialSetting Sweep::truth_of(std::uint64_t repetition, double step_scale) const {
-  TrialSetting trial{.scenario = scenario_, .store = store_};
+  TrialSetting trial{.scenario = scenario_, .store = store_, .threads = request_.threads};
   trial.scenario.step_scale = step_scale;
   trial.scenario.seed = batch::seed_of_repetition(request_.seed, repetition);
   auto& sets = trial.scenario.sets;

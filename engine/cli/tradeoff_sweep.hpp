@@ -23,6 +23,7 @@ struct SweepRequest {
   std::optional<double> duration, time_limit_s;
   std::uint64_t memory_limit_mb = 0;  ///< 0: 80 % of the machine's
   std::uint64_t seed = 1, repeat = 3;
+  unsigned threads = 1;  ///< of each run
   bool no_cache = false, quiet = false;
 };
 

@@ -55,6 +55,13 @@ constexpr Words kWords[] = {
     {Change::bits, "different", "different", "different", ""},
 };
 
+std::vector<std::string> without_verdict(const Comparison& c) {
+  std::vector<std::string> names;
+  for (const TimeFigure& time : c.times)
+    if (time.is_judged && time.change == TimeChange::unknown) names.push_back(time.name);
+  return names;
+}
+
 bool is_any(const Comparison& c, Change change) {
   return !names_with(c.counts, change).empty() || !names_with(c.accuracy, change).empty() ||
          !names_with(c.outcomes, change).empty() || !names_with(c.times, change).empty();
@@ -99,6 +106,7 @@ std::vector<std::string> reasons_of(const Comparison& c) {
   }
   add(c.only_a, "only in A");
   add(c.only_b, "only in B");
+  if (c.kind == "programs") add(without_verdict(c), "without a verdict: too few runs");
   return reasons;
 }
 

@@ -92,7 +92,7 @@ std::string text_of_peers(const ordered_json& peers) {
       pushed += row.at("searched").at("insertion").size();
     }
     return fmt::format(
-        "contact queries at {} recorded poses of a pin in a hole; {} settings tried, of each engine the one that errs\n"
+        "contact queries at {} poses of a pin in a hole; {} settings tried, of each engine the one that errs\n"
         "least often (misses 10 um, or imagines them), then least (95 %, in steps of 10 um), then is fastest; 'least "
         "of\n"
         "all' is the least such error of any setting:\n{}"

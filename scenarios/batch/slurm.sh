@@ -24,6 +24,10 @@ verisim=${VERISIM:-$project/build/verisim}
 verisim=$(realpath "$verisim")
 command -v sbatch > /dev/null || { echo "error: no sbatch: this machine submits no jobs to Slurm (apt install slurm-client); without Slurm use verisim batch --shard" >&2; exit 2; }
 cpus=${CPUS:-1}
+# A shard without a run reads scenario, options and design: what is wrong with them is said here, not in each job's log.
+tried=$(mktemp -d)
+trap 'rm -rf "$tried"' EXIT
+"$verisim" batch "$@" --jobs "$cpus" --shard 10000000/10000000 --quiet -o "$tried/none" > /dev/null
 mkdir -p "$folder"
 folder=$(realpath "$folder")
 # A folder whose merge was killed says so, and is merged again.

@@ -33,6 +33,7 @@ class Programs(Compare):
         done = self.succeed("compare", "--programs", VERISIM, VERISIM, "--runs", "4", "-o", times, "--json", "--", "run", scenario)
         report = json.loads(done.stdout)
         self.assertEqual((report["verdict"], report["counts"]), ("same", []))
+        self.assertRegex(report["why"][0], "process_s.* without a verdict: too few runs")
         self.assertIn("state_hash", {f["name"] for f in report["accuracy"]})
         self.assertLessEqual({"process_s", "cpu_s", "load_s", "wall_s", "frame_ns.p50"}, {t["name"] for t in report["times"]})
         for time in report["times"]:

@@ -152,6 +152,21 @@ class WithoutSlurm(ProgramTest):
         self.assertRegex(done.stderr, "^error: no sbatch[^\n]+--shard\n$")
         self.assertFalse(os.path.exists(self.path("many")))
 
+    def test_wrong_options_are_told_and_nothing_is_submitted(self):
+        os.mkdir(self.path("bin"))
+        submits = self.write("bin/sbatch", f"#!/bin/sh\ntouch {self.path('submitted')}\necho 1\n")
+        os.chmod(submits, 0o755)
+        env = dict(os.environ, PATH=self.path("bin") + ":" + os.environ["PATH"], VERISIM=VERISIM)
+        scenario = self.write("many.lua", MANY)
+        for code, words, options in ((2, "--vry", ["--vry", "speed=1"]), (3, "no parameter 'sped'", ["--vary", "sped=1"]),
+                                     (2, "--repeat", ["--repeat", "0"]), (0, "", ["--vary", "speed=1"])):
+            done = subprocess.run([os.path.join(SOURCE, "scenarios", "batch", "slurm.sh"), "2", self.path("many"), scenario, *options],
+                                  env=env, capture_output=True, text=True, cwd=self.folder)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(os.path.exists(self.path("many")), code == 0)
+            self.assertEqual(os.path.exists(self.path("submitted")), code == 0)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -44,7 +44,21 @@ class Stability(ProgramTest):
         self.refuse(2, ["SCENARIO", "--only ledgers"], "stability", "--only", "maps", "none.lua")
         self.refuse(2, "--set", "stability", "--only", "extremes", "--set", "a=b")
         self.refuse(2, "--duration", "stability", "--only", "extremes", "--duration", "1")
+        self.refuse(2, "--seed", "stability", "--only", "maps", "--seed", "1")
+        self.refuse(2, "--threads", "stability", "--only", "maps", "--threads", "2")
+        self.refuse(2, "--bind", "stability", "--only", "maps", "--bind", "a=b")
         self.refuse(3, "nowhere", "stability", "--only", "ledgers", "--scenarios", "nowhere")
+
+    @unittest.skipIf(SANITIZED, "one scenario's ledger is computed above")
+    def test_a_ledger_is_of_the_seed_and_the_trace_that_are_named(self):
+        scenario = os.path.join(SOURCE, "scenarios", "peg_in_hole.lua")
+        self.succeed("trace", "synth", "reach", "-o", "hand.csv")
+        input_of = lambda *options: self.rows("--only", "ledgers", scenario, "--duration", "0.3", *options)["ledgers"][0]["figures"]["input"]["value"]
+        first = input_of("--seed", "1")
+        self.assertEqual(input_of("--seed", "1", "--threads", "2", "--simd", "scalar"), first)
+        self.assertNotEqual(input_of("--seed", "2"), first)
+        self.assertNotEqual(input_of("--seed", "1", "--bind", "omni=hand.csv"), first)
+        self.refuse(3, "no device 'foot'", "stability", "--only", "ledgers", scenario, "--bind", "foot=hand.csv")
 
     def test_wrong_usage(self):
         self.assertEqual(self.run_program("stability", "--only", "weather").returncode, 2)

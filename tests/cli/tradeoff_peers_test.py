@@ -18,8 +18,6 @@ THEIRS = ["MuJoCo", "Bullet", "ODE", "FCL"]
 def why_not():
     if not os.path.exists(PEERS):
         return "verisim-peers is not built: it needs libmujoco-dev libbullet-dev libode-dev, and ninja -C build verisim-peers"
-    if not os.path.exists(POSES):
-        return f"{POSES} is not there"
     return None
 
 
@@ -37,9 +35,10 @@ class Peers(ProgramTest):
             if "missing" in rows[name]:
                 self.assertTrue(rows[name]["missing"].startswith("lib"))
         there = [row for row in table["peers"] if "missing" not in row]
-        with open(POSES) as f:
-            lines = [line for line in f if line[0] != "#"]
-        depths = [float(row["depth"]) for row in csv.DictReader(lines)]
+        depths = []  # without the file verisim-peers draws the poses
+        if os.path.exists(POSES):
+            with open(POSES) as f:
+                depths = [float(row["depth"]) for row in csv.DictReader(line for line in f if line[0] != "#")]
         insertions = None
         for row in there:
             self.assertTrue(row["version"], row["name"])
@@ -53,7 +52,9 @@ class Peers(ProgramTest):
                 time = best["query_us" if what == "poses" else "step_us"]
                 self.assertTrue(0 < time["low"] <= time["median"] <= time["high"], time)
             for p in row["searched"]["poses"]:
-                self.assertEqual(p["poses"], len(depths))
+                self.assertEqual(p["poses"], len(depths) or 1000)
+                if not depths:
+                    continue
                 # No more can be missed than penetrate, nor imagined than are clear: the truth is that of the file.
                 self.assertLessEqual(p["missed"] * len(depths), sum(d > 1e-5 for d in depths) + 1e-6)
                 self.assertLessEqual(p["imagined"] * len(depths), sum(d <= 0 for d in depths) + 1e-6)
