@@ -51,14 +51,16 @@ class Stability(ProgramTest):
 
     @unittest.skipIf(SANITIZED, "one scenario's ledger is computed above")
     def test_a_ledger_is_of_the_seed_and_the_trace_that_are_named(self):
-        scenario = os.path.join(SOURCE, "scenarios", "peg_in_hole.lua")
-        self.succeed("trace", "synth", "reach", "-o", "hand.csv")
-        input_of = lambda *options: self.rows("--only", "ledgers", scenario, "--duration", "0.3", *options)["ledgers"][0]["figures"]["input"]["value"]
-        first = input_of("--seed", "1")
-        self.assertEqual(input_of("--seed", "1", "--threads", "2", "--simd", "scalar"), first)
-        self.assertNotEqual(input_of("--seed", "2"), first)
-        self.assertNotEqual(input_of("--seed", "1", "--bind", "omni=hand.csv"), first)
-        self.refuse(3, "no device 'foot'", "stability", "--only", "ledgers", scenario, "--bind", "foot=hand.csv")
+        def input_of(scenario, *options):
+            ledger, = self.rows("--only", "ledgers", os.path.join(SOURCE, "scenarios", scenario), "--duration", "0.3", *options)["ledgers"]
+            return ledger["figures"]["input"]["value"]
+        drawn = input_of("peg_in_hole.lua", "--seed", "1")
+        self.assertEqual(input_of("peg_in_hole.lua", "--seed", "1", "--threads", "2", "--simd", "scalar"), drawn)
+        self.assertNotEqual(input_of("peg_in_hole.lua", "--seed", "2"), drawn)
+        self.succeed("trace", "synth", "reach", "-o", self.path("hand.csv"), "--set", "wait=0.01", "--set", "time=0.2")
+        self.assertNotEqual(input_of("reach.lua", "--bind", "omni=" + self.path("hand.csv")), input_of("reach.lua"))
+        self.refuse(3, "no device 'foot'", "stability", "--only", "ledgers", os.path.join(SOURCE, "scenarios", "reach.lua"), "--bind",
+                    "foot=hand.csv")
 
     def test_wrong_usage(self):
         self.assertEqual(self.run_program("stability", "--only", "weather").returncode, 2)
