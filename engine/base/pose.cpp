@@ -1,10 +1,29 @@
 #include "engine/base/pose.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim {
+
+Quaterniond turn_between(const Vector3d& a, const Vector3d& b) {
+  constexpr double kOpposite = 1e-12;
+  const Vector3d from = a.normalized(), to = b.normalized();
+  const double cosine = to.dot(from);
+  if (cosine < -1 + kOpposite) {
+    const Vector3d across = from.unitOrthogonal();
+    return Quaterniond(0, across.x(), across.y(), across.z());
+  }
+  const Vector3d axis = from.cross(to);
+  const double s = std::sqrt((1 + cosine) * 2);
+  const double inverse = 1 / s;
+  return Quaterniond(s * 0.5, axis.x() * inverse, axis.y() * inverse, axis.z() * inverse);
+}
+
+Vector6d solved(const Matrix6d& A, const Vector6d& b) {
+  return A.llt().solve(b);
+}
 
 Quaterniond rotation_from_vector(const Vector3d& w) {
   const double angle = std::sqrt(w.squaredNorm());

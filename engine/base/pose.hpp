@@ -53,6 +53,14 @@ struct Twist {
   Vector3d angular = Vector3d::Zero();
 };
 
+/// The smallest rotation that turns the direction of a into that of b; of opposite ones a half turn about some axis
+/// across them. @pre neither is zero. Eigen's FromTwoVectors brings a singular value decomposition: 5 s of each
+/// compile.
+[[nodiscard]] Quaterniond turn_between(const Vector3d& a, const Vector3d& b);
+
+/// x of A x = b by Cholesky's decomposition. One place for it: each costs 4 s of a compile. @pre A is positive definite
+[[nodiscard]] Vector6d solved(const Matrix6d& A, const Vector6d& b);
+
 /// The rotation by the vector w (axis times angle, rad). Pinned functions; exact identity at w = 0.
 [[nodiscard]] Quaterniond rotation_from_vector(const Vector3d& w);
 

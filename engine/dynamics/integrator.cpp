@@ -1,6 +1,5 @@
 #include "engine/dynamics/integrator.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -228,7 +227,7 @@ void assemble(const RigidBody& body, const Loads& loads, double dt, Contacts con
     step.A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
     step.b += dt * (stacked(loads.contact) + dt * loads.contact_drift + loads.contact_damping * u0);
   }
-  step.free = step.A.llt().solve(step.b);
+  step.free = solved(step.A, step.b);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ class Coaxial {
       moved_.axis = cosine < 0 ? Vector3d(-z) : z;
       angle_ = (divider.axis - moved_.axis).norm();
       if (angle_ > 0.2) return false;
-      rotation_.setFromTwoVectors(divider.axis, moved_.axis);
+      rotation_ = turn_between(divider.axis, moved_.axis);
       near += divider.axis.dot(patch_.middle - divider.point) * divider.axis;
     }
     from_ = near;

@@ -181,7 +181,7 @@ int quat_make_rotate(lua_State* L) {
   if (lua_type(L, 2) == LUA_TNUMBER)
     q = turning(lua_tonumber(L, 2), vector_at(L, 3, "makeRotate: the axis"));
   else
-    q = Quaterniond::FromTwoVectors(vector_at(L, 2, "makeRotate: from"), vector_at(L, 3, "makeRotate: to"));
+    q = turn_between(vector_at(L, 2, "makeRotate: from"), vector_at(L, 3, "makeRotate: to"));
   return 0;
 }
 

@@ -94,7 +94,7 @@ Pose LoneBlobSolver::start_of_turn(const Sighting& lone, const Sighting& same, c
   const double spacing_square = (other.p_H - same.p_H).squaredNorm();
   const double along = std::sqrt(std::max(0.0, spacing_square - (nearest - known).squaredNorm()));
   const Vector3d line = nearest + side * along * c.along - known;
-  const Quaterniond turn = Quaterniond::FromTwoVectors(near * (other.p_H - same.p_H), line).normalized();
+  const Quaterniond turn = turn_between(near * (other.p_H - same.p_H), line).normalized();
   const Quaterniond R_RH = (turn * near).normalized();
   return {known - R_RH * same.p_H, R_RH};
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <utility>
 
 #include "engine/base/error.hpp"
@@ -391,7 +390,7 @@ void ExactResponse::read_bodies(std::size_t island, double dt) {
     // exactly these forces give keeps the momentum of bodies that push each other.
     Vector6d impulse;
     impulse << dt * of.wrench.force, dt * of.wrench.torque;
-    of.velocity_after = of.step.free + of.step.A.llt().solve(impulse);
+    of.velocity_after = of.step.free + verisim::solved(of.step.A, impulse);
     if (solver_->was_hit()) continue;
     of.rounded = (of.velocity_after - of.velocity).head<3>().norm();
     of.velocity = of.velocity_after;
