@@ -102,6 +102,32 @@ TEST(RotationVector, OfManyTurnsIsStillAUnitQuaternion) {
   EXPECT_LE(std::abs(rotation_from_vector({6e3, -8e3, 0}).norm() - 1), tolerance(2 * 0x1p-53));
 }
 
+TEST(TurnBetween, TakesOneDirectionToTheOtherByTheSmallestAngle) {
+  for (const std::uint64_t seed : seeds(200)) {
+    Inputs draw(seed);
+    const Vector3d a = draw.vector(3), b = seed % 4 == 0 ? Vector3d(-2 * a) : draw.vector(3);
+    const Quaterniond q = turn_between(a, b);
+    EXPECT_NEAR(q.norm(), 1, 1e-14);
+    EXPECT_LT((q * a.normalized() - b.normalized()).norm(), 1e-12);
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+    EXPECT_NEAR(vector_from_rotation(q).norm(), angle, 1e-7);
+  }
+}
+
+TEST(Solved, GivesBackWhatTheMatrixWasMultipliedWith) {
+  for (const std::uint64_t seed : seeds(50)) {
+    Inputs draw(seed);
+    Matrix6d root;
+    Vector6d x;
+    for (int i = 0; i < 6; ++i) {
+      x[i] = draw.between(-1, 1);
+      for (int j = 0; j < 6; ++j) root(i, j) = draw.between(-1, 1);
+    }
+    const Matrix6d A = root * root.transpose() + Matrix6d::Identity();
+    EXPECT_LT((solved(A, A * x) - x).norm(), 1e-12);
+  }
+}
+
 TEST(Slerp, EndsAtItsEndsAndHalvesTheAngle) {
   for (const std::uint64_t seed : seeds(1000)) {
     SCOPED_TRACE(seed);
