@@ -148,7 +148,9 @@ Poses drawn_poses() {
 
 Poses poses_in_hole() {
   bench::PegPoses recorded = bench::load_peg_poses();
-  Poses poses = recorded.X_AB.empty() ? drawn_poses() : Poses{std::move(recorded.X_AB), std::move(recorded.depth)};
+  const bool are_drawn = recorded.X_AB.empty();
+  Poses poses = are_drawn ? drawn_poses() : Poses{std::move(recorded.X_AB), std::move(recorded.depth)};
+  poses.are_drawn = are_drawn;
   poses.clearance = bench::kHoleRadius - bench::kPinRadius;
   return poses;
 }

@@ -67,7 +67,8 @@ void push_again(const std::vector<Engine>& engines, std::vector<std::vector<Push
 struct Poses {
   std::vector<Pose> X_AB;
   std::vector<double> depth;
-  double clearance = 0;  ///< m, radial
+  double clearance = 0;    ///< m, radial
+  bool are_drawn = false;  ///< the file is not there
 };
 /// The poses that others were measured on (bench/peg_scene.hpp); without their file 1000 that are drawn: the pin's
 /// lower end in the hole, its axis up to 7.5 mm beside the hole's and tilted by up to half a degree.

@@ -114,6 +114,8 @@ int run(const Options& o) {
   const Progress say = [&](const std::string& text) { line.say(text.substr(0, 60)); };
   const std::vector<Engine> engines = all_engines(o.quick);
   const Poses poses = poses_in_hole();
+  if (poses.are_drawn && !o.quiet)
+    std::fputs("note: peg_poses.csv is not beside the sources: the poses of the contact queries are drawn\n", stderr);
   std::vector<std::vector<Pushed>> pushed = push_all(engines, insertions(o.quick), say);
   push_again(engines, pushed, o.quick ? 1 : 3, say);
   const std::vector<std::vector<Found>> found = find_all(engines, poses, o.quick ? 2 : 7, say);

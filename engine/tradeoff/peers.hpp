@@ -4,9 +4,8 @@
 //
 //   name, version        of the engine; version null and `missing`, a Debian package: it was not there
 //   setting, searched    words of the best, for `poses` and for `insertion`; figures of every setting that was tried
-//   poses                contact queries at poses of a pin in a hole: query_us, depth_error_m, gap_error_m, missed,
-//   imagined; null:
-//                        the engine has no query of its own
+//   poses                contact queries: query_us, depth_error_m, gap_error_m, missed, imagined; null: the engine has
+//                        no query of its own
 //   insertion            driven insertions: passed, of, overlap_m, overlap_of_clearance, force_error_N, step_us
 //
 // Truths are closed forms of poses (bench/peers/insertion.hpp). SI units, times in us.
