@@ -21,10 +21,6 @@ Quaterniond turn_between(const Vector3d& a, const Vector3d& b) {
   return Quaterniond(s * 0.5, axis.x() * inverse, axis.y() * inverse, axis.z() * inverse);
 }
 
-Vector6d solved(const Matrix6d& A, const Vector6d& b) {
-  return A.llt().solve(b);
-}
-
 Quaterniond rotation_from_vector(const Vector3d& w) {
   const double angle = std::sqrt(w.squaredNorm());
   // sin(a/2)/a by its series below 1e-4: the next term is a^4/3840, under 3e-20.

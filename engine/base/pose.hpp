@@ -58,9 +58,6 @@ struct Twist {
 /// compile.
 [[nodiscard]] Quaterniond turn_between(const Vector3d& a, const Vector3d& b);
 
-/// x of A x = b by Cholesky's decomposition. One place for it: each costs 4 s of a compile. @pre A is positive definite
-[[nodiscard]] Vector6d solved(const Matrix6d& A, const Vector6d& b);
-
 /// The rotation by the vector w (axis times angle, rad). Pinned functions; exact identity at w = 0.
 [[nodiscard]] Quaterniond rotation_from_vector(const Vector3d& w);
 

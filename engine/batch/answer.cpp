@@ -1,20 +1,17 @@
 #include "engine/batch/answer.hpp"
-
-#include <nlohmann/json.hpp>
+#include "engine/base/json.hpp"
 
 namespace verisim::batch {
 
-using nlohmann::ordered_json;
-
 namespace {
 
-ordered_json cells_json(const std::map<std::string, Cell>& cells) {
-  ordered_json json = ordered_json::object();
+Json cells_json(const std::map<std::string, Cell>& cells) {
+  Json json = Json::object();
   for (const auto& [name, cell] : cells) json[name] = json_of(cell);
   return json;
 }
 
-std::map<std::string, Cell> cells_of(const ordered_json& json) {
+std::map<std::string, Cell> cells_of(const Json& json) {
   std::map<std::string, Cell> cells;
   for (const auto& [name, value] : json.items()) cells[name] = cell_of(value);
   return cells;
@@ -23,21 +20,21 @@ std::map<std::string, Cell> cells_of(const ordered_json& json) {
 }  // namespace
 
 std::string to_text(const Answer& answer) {
-  ordered_json json = {{"status", answer.status},
-                       {"error", answer.error},
-                       {"answered", answer.answered},
-                       {"figures", cells_json(answer.figures)},
-                       {"timing", cells_json(answer.timing)},
-                       {"parameters", cells_json(answer.parameters)},
-                       {"measures", ordered_json::array()},
-                       {"inputs", answer.inputs}};
+  Json json = {{"status", answer.status},
+               {"error", answer.error},
+               {"answered", answer.answered},
+               {"figures", cells_json(answer.figures)},
+               {"timing", cells_json(answer.timing)},
+               {"parameters", cells_json(answer.parameters)},
+               {"measures", Json::array()},
+               {"inputs", answer.inputs}};
   for (const Measure& measure : answer.measures)
     json["measures"].push_back({{"name", measure.name}, {"value", measure.value}, {"unit", measure.unit}});
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 Answer answer_of(const std::string& text) {
-  const ordered_json json = ordered_json::parse(text);
+  const Json json = parse_json(text);
   Answer answer{.status = json.at("status"),
                 .error = json.at("error"),
                 .answered = json.at("answered"),
@@ -46,7 +43,7 @@ Answer answer_of(const std::string& text) {
                 .parameters = cells_of(json.at("parameters")),
                 .measures = {},
                 .inputs = json.at("inputs")};
-  for (const ordered_json& measure : json.at("measures"))
+  for (const Json& measure : json.at("measures"))
     answer.measures.push_back({measure.at("name"), measure.at("value"), measure.at("unit")});
   return answer;
 }

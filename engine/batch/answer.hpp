@@ -24,7 +24,7 @@ struct Answer {
 };
 
 [[nodiscard]] std::string to_text(const Answer& answer);
-/// Nothing that a process of ours did not write. Throws nlohmann's exception for other texts.
+/// Nothing that a process of ours did not write. @throws Json::exception for other texts.
 [[nodiscard]] Answer answer_of(const std::string& text);
 
 }  // namespace verisim::batch

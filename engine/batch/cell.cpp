@@ -1,4 +1,5 @@
 #include "engine/batch/cell.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +26,7 @@ std::string csv_field(const Cell& cell) {
   return quoted + "\"";
 }
 
-nlohmann::ordered_json json_of(const Cell& cell) {
+Json json_of(const Cell& cell) {
   if (const auto* number = std::get_if<double>(&cell)) {
     if (std::isfinite(*number)) return *number;
     return nullptr;
@@ -35,14 +36,14 @@ nlohmann::ordered_json json_of(const Cell& cell) {
   return nullptr;
 }
 
-Cell cell_of(const nlohmann::ordered_json& json) {
+Cell cell_of(const Json& json) {
   if (json.is_null()) return {};
   if (json.is_boolean()) return std::string(json.get<bool>() ? "true" : "false");
   if (json.is_number_unsigned()) return cell_of(json.get<std::uint64_t>());
   if (json.is_number_integer()) return json.get<std::int64_t>();
   if (json.is_number()) return json.get<double>();
   if (json.is_string()) return json.get<std::string>();
-  return json.dump();
+  return json_text(json);
 }
 
 Cell cell_of(std::uint64_t number) {

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
+
+#include "engine/base/json.hpp"
 
 namespace verisim::batch {
 
@@ -15,9 +16,9 @@ using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 /// As people read it, and as CSV has it but for the quotes.
 [[nodiscard]] std::string plain_text(const Cell& cell);
 
-[[nodiscard]] nlohmann::ordered_json json_of(const Cell& cell);
+[[nodiscard]] Json json_of(const Cell& cell);
 /// A scalar of JSON; true and false are texts, a list or an object is its JSON text.
-[[nodiscard]] Cell cell_of(const nlohmann::ordered_json& json);
+[[nodiscard]] Cell cell_of(const Json& json);
 /// A whole number where it fits 63 bits, else its digits as text: a table of SQLite holds no more.
 [[nodiscard]] Cell cell_of(std::uint64_t number);
 

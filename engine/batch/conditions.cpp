@@ -1,4 +1,5 @@
 #include "engine/batch/conditions.hpp"
+#include "engine/base/json.hpp"
 
 namespace verisim::batch {
 
@@ -22,12 +23,12 @@ void add_conditions(Answer& answer, const Conditions& conditions) {
   answer.timing["cpu"] = conditions.cpu;
 }
 
-nlohmann::ordered_json conditions_json(Index& index) {
+Json conditions_json(Index& index) {
   std::vector<std::string> names;
   for (const IndexColumn& column : condition_columns()) names.push_back(column.name);
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  Json json = Json::array();
   index.count_timing_by(names, [&](const std::vector<Cell>& cells, std::uint64_t runs) {
-    nlohmann::ordered_json one;
+    Json one;
     for (std::size_t i = 0; i < names.size(); ++i) one[names[i]] = json_of(cells[i]);
     one["runs"] = runs;
     json.push_back(std::move(one));

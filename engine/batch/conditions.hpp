@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/batch/index.hpp"
 
 namespace verisim::batch {
@@ -22,6 +23,6 @@ struct Conditions {
 void add_conditions(Answer& answer, const Conditions& conditions);
 
 /// For batch.json: a member for each set of conditions, in the order of its first run, with the number of its `runs`.
-[[nodiscard]] nlohmann::ordered_json conditions_json(Index& index);
+[[nodiscard]] Json conditions_json(Index& index);
 
 }  // namespace verisim::batch

@@ -1,4 +1,5 @@
 #include "engine/batch/design.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +8,6 @@
 #include "engine/base/error.hpp"
 
 namespace verisim::batch {
-
-using nlohmann::ordered_json;
 
 std::vector<std::string> Design::group_keys() const {
   std::vector<std::string> all;
@@ -55,24 +54,24 @@ Point Design::point(std::uint64_t run) const {
   return point;
 }
 
-ordered_json to_json(const Design& design) {
-  ordered_json json = {{"vary", ordered_json::array()}};
+Json to_json(const Design& design) {
+  Json json = {{"vary", Json::array()}};
   for (const Axis& axis : design.axes) {
-    ordered_json values = ordered_json::array();
+    Json values = Json::array();
     for (const Value& value : axis.values) values.push_back(json_of(value.cell));
     json["vary"].push_back({{"parameter", axis.key}, {"values", values}});
   }
   if (design.table) {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const auto& row : design.table->rows) {
-      ordered_json cells = ordered_json::array();
+      Json cells = Json::array();
       for (const Value& value : row) cells.push_back(json_of(value.cell));
       rows.push_back(std::move(cells));
     }
     json["table"] = {{"parameters", design.table->keys}, {"rows", rows}, {"seeds", design.table->seeds}};
   }
   if (!design.draws.empty()) {
-    json["random"] = {{"draws", design.draw_count}, {"parameters", ordered_json::array()}};
+    json["random"] = {{"draws", design.draw_count}, {"parameters", Json::array()}};
     for (const Draw& draw : design.draws) {
       const bool normal = draw.distribution.kind == Distribution::Kind::normal;
       json["random"]["parameters"].push_back({{"parameter", draw.key},

@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/batch/cell.hpp"
 #include "engine/batch/distribution.hpp"
 
@@ -89,6 +89,6 @@ using ReadValue = std::function<Cell(const std::string& option, const std::strin
 [[nodiscard]] Design make_design(const DesignRequest& request, const ReadValue& read);
 
 /// All that makes two designs the same but the seed and the shard; for batch.json.
-[[nodiscard]] nlohmann::ordered_json to_json(const Design& design);
+[[nodiscard]] Json to_json(const Design& design);
 
 }  // namespace verisim::batch

@@ -1,4 +1,5 @@
 #include "engine/batch/folder.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -13,8 +14,6 @@
 
 namespace verisim::batch {
 
-using nlohmann::ordered_json;
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,18 +21,18 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = "batch.json";
 constexpr const char* kLock = "batch.lock";
 
-std::string leaf_text(const ordered_json& json) {
-  return shown(json.dump(-1, ' ', false, ordered_json::error_handler_t::replace), 80);
+std::string leaf_text(const Json& json) {
+  return shown(json_text(json), 80);
 }
 
 /// Of an array's element: its parameter's name, else its number.
-std::string element_name(const ordered_json& element, std::size_t number) {
+std::string element_name(const Json& element, std::size_t number) {
   if (element.is_object() && element.contains("parameter") && element["parameter"].is_string())
     return element["parameter"].get<std::string>();
   return fmt::format("{}", number);
 }
 
-std::string difference(const std::string& path, const ordered_json& there, const ordered_json& here) {
+std::string difference(const std::string& path, const Json& there, const Json& here) {
   const auto below = [&](const std::string& name) { return path.empty() ? name : path + "/" + name; };
   if (there == here) return {};
   if (there.is_object() && here.is_object()) {
@@ -46,7 +45,7 @@ std::string difference(const std::string& path, const ordered_json& there, const
       if (!there.contains(name)) return fmt::format("{} is {} here and not there", below(name), leaf_text(value));
     return {};
   }
-  const auto has_objects = [](const ordered_json& j) { return j.is_array() && !j.empty() && j[0].is_object(); };
+  const auto has_objects = [](const Json& j) { return j.is_array() && !j.empty() && j[0].is_object(); };
   if (has_objects(there) && has_objects(here) && there.size() == here.size()) {
     for (std::size_t i = 0; i < there.size(); ++i) {
       std::string found = difference(below(element_name(there[i], i)), there[i], here[i]);
@@ -107,15 +106,13 @@ void clear_half_merged(const std::string& folder) {
 }
 
 /// The member that a merge and a summary read of it and that is not as it should be; empty: none.
-std::string wrong_member(const ordered_json& json) {
-  const auto is_count = [](const ordered_json& j) { return j.is_number_unsigned(); };
-  const auto is_text = [](const ordered_json& j) { return j.is_string(); };
-  const auto is_object = [](const ordered_json& j) { return j.is_object(); };
-  const auto are_texts = [&](const ordered_json& j) {
-    return j.is_array() && std::all_of(j.begin(), j.end(), is_text);
-  };
-  const auto is_shard = [](const ordered_json& j) { return j.is_null() || j.is_object(); };
-  const std::pair<const char*, std::function<bool(const ordered_json&)>> members[] = {
+std::string wrong_member(const Json& json) {
+  const auto is_count = [](const Json& j) { return j.is_number_unsigned(); };
+  const auto is_text = [](const Json& j) { return j.is_string(); };
+  const auto is_object = [](const Json& j) { return j.is_object(); };
+  const auto are_texts = [&](const Json& j) { return j.is_array() && std::all_of(j.begin(), j.end(), is_text); };
+  const auto is_shard = [](const Json& j) { return j.is_null() || j.is_object(); };
+  const std::pair<const char*, std::function<bool(const Json&)>> members[] = {
       {"version", is_text},  {"runs", is_count},  {"seed", is_count},
       {"design", is_object}, {"shard", is_shard}, {"groups", are_texts}};
   for (const auto& [name, is] : members)
@@ -123,34 +120,24 @@ std::string wrong_member(const ordered_json& json) {
   return {};
 }
 
-ordered_json parsed(const std::string& file, const std::string& text) {
-  try {
-    return ordered_json::parse(text);
-  } catch (const ordered_json::parse_error& error) {
-    fail(ErrorKind::input, "{}:{}: is no JSON, or the file ends there; move the folder away and run the batch again",
-         file, line_of_byte(text, error.byte));
-  }
-}
-
 }  // namespace
 
-std::string first_difference(const ordered_json& there, const ordered_json& here,
-                             const std::vector<std::string>& ignored) {
-  ordered_json a = there, b = here;
-  for (ordered_json* manifest : {&a, &b})
+std::string first_difference(const Json& there, const Json& here, const std::vector<std::string>& ignored) {
+  Json a = there, b = here;
+  for (Json* manifest : {&a, &b})
     for (const std::string& name : ignored) manifest->erase(name);
   return difference("", a, b);
 }
 
-ordered_json read_any_manifest(const std::string& folder) {
+Json read_any_manifest(const std::string& folder) {
   const std::string file = folder + "/" + kManifest;
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: holds no batch ({} is not there); name a folder of verisim batch", folder, kManifest);
-  ordered_json json = parsed(file, UserFile(file, file).content());
+  Json json = parse_json_of(file, UserFile(file, file).content(), "move the folder away and run the batch again");
   const bool is_ours = json.is_object() && json.contains("format") && json["format"] == "verisim-batch";
-  if (is_ours && json.value("format_version", ordered_json()) != kManifestFormat)
+  if (is_ours && json.value("format_version", Json()) != kManifestFormat)
     fail(ErrorKind::input, "{}: is of format {}, this program reads {}; go on with the version that wrote it", file,
-         leaf_text(json.value("format_version", ordered_json())), kManifestFormat);
+         leaf_text(json.value("format_version", Json())), kManifestFormat);
   if (!is_ours)
     fail(ErrorKind::input, "{}: does not say what batch this is; move the folder away and run the batch again", file);
   if (const std::string member = wrong_member(json); !member.empty())
@@ -159,18 +146,18 @@ ordered_json read_any_manifest(const std::string& folder) {
   return json;
 }
 
-bool is_half_merged(const ordered_json& manifest) {
+bool is_half_merged(const Json& manifest) {
   return manifest.contains(kMerging);
 }
 
-ordered_json read_manifest(const std::string& folder) {
-  ordered_json manifest = read_any_manifest(folder);
+Json read_manifest(const std::string& folder) {
+  Json manifest = read_any_manifest(folder);
   if (is_half_merged(manifest))
     fail(ErrorKind::input, "{}: 'batch merge' did not end here; call it again with the same folders", folder);
   return manifest;
 }
 
-Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move(path)) {
+Folder::Folder(std::string path, const Json& manifest) : path_(std::move(path)) {
   make_folder(path_);
   const std::string file = path_ + "/" + kManifest;
   if (!identity_of(file) && !identity_of(path_ + "/" + kLock) && holds_other_things(path_))
@@ -193,9 +180,9 @@ Folder::Folder(std::string path, const ordered_json& manifest) : path_(std::move
   write_manifest(manifest);
 }
 
-void Folder::write_manifest(const ordered_json& manifest) {
+void Folder::write_manifest(const Json& manifest) {
   Replacement replacement(file(kManifest), ".part");
-  replacement.write(manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  replacement.write(json_text(manifest, 2) + "\n");
   replacement.commit();
 }
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/record/file_replace.hpp"
 
 namespace verisim::batch {
@@ -16,7 +16,7 @@ class Folder {
   /// differ. Error(input): it holds another design, which is named; Error(io): it holds other things, cannot be made,
   /// or another batch writes in it. A
   /// manifest that is half merged begins anew where another such one is.
-  Folder(std::string path, const nlohmann::ordered_json& manifest);
+  Folder(std::string path, const Json& manifest);
   /// The lock alone stays: a name that another process may be waiting for is not taken away.
   ~Folder() = default;
   Folder(const Folder&) = delete;
@@ -25,7 +25,7 @@ class Folder {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
   /// Replaces batch.json. Error(io).
-  void write_manifest(const nlohmann::ordered_json& manifest);
+  void write_manifest(const Json& manifest);
   /// runs/000123.h5, below the folder.
   [[nodiscard]] static std::string run_file(std::uint64_t run);
 
@@ -40,9 +40,9 @@ class Folder {
 inline constexpr int kManifestFormat = 1;  ///< format_version of batch.json
 
 /// batch.json of a folder. Error(input): there is none, or it is something else.
-[[nodiscard]] nlohmann::ordered_json read_any_manifest(const std::string& folder);
+[[nodiscard]] Json read_any_manifest(const std::string& folder);
 /// Likewise, and Error(input) if what makes the folder is a merge that has not ended.
-[[nodiscard]] nlohmann::ordered_json read_manifest(const std::string& folder);
+[[nodiscard]] Json read_manifest(const std::string& folder);
 
 /// Members of batch.json: what the times of its runs hang on (conditions.hpp); how many shards were merged.
 inline constexpr const char* kComputed = "computed";
@@ -51,11 +51,11 @@ inline constexpr const char* kShardsMerged = "shards_merged";
 inline const std::vector<std::string> kOfTheMaking = {"machine", "scenario", kComputed, kShardsMerged};
 /// Member of batch.json while shards are merged into its folder.
 inline constexpr const char* kMerging = "merging";
-[[nodiscard]] bool is_half_merged(const nlohmann::ordered_json& manifest);
+[[nodiscard]] bool is_half_merged(const Json& manifest);
 
 /// The first difference of two manifests: "design/vary/clearance/values is [1,2] there and [1,3]
 /// here"; empty: none. Members of `ignored` count for nothing.
-[[nodiscard]] std::string first_difference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& here,
+[[nodiscard]] std::string first_difference(const Json& there, const Json& here,
                                            const std::vector<std::string>& ignored);
 
 }  // namespace verisim::batch

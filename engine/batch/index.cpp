@@ -1,4 +1,5 @@
 #include "engine/batch/index.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@
 
 namespace verisim::batch {
 
-using nlohmann::ordered_json;
-
 namespace {
 
 constexpr int kFormat = 1;
@@ -24,16 +23,16 @@ std::string lower(std::string text) {
   return text;
 }
 
-ordered_json columns_json(const std::vector<IndexColumn>& columns) {
-  ordered_json json = ordered_json::array();
+Json columns_json(const std::vector<IndexColumn>& columns) {
+  Json json = Json::array();
   for (const IndexColumn& c : columns)
     json.push_back({{"name", c.name}, {"type", c.type}, {"unit", c.unit}, {"meaning", c.meaning}});
   return json;
 }
 
-std::vector<IndexColumn> columns_of(const ordered_json& json) {
+std::vector<IndexColumn> columns_of(const Json& json) {
   std::vector<IndexColumn> columns;
-  for (const ordered_json& c : json) columns.push_back({c.at("name"), c.at("type"), c.at("unit"), c.at("meaning")});
+  for (const Json& c : json) columns.push_back({c.at("name"), c.at("type"), c.at("unit"), c.at("meaning")});
   return columns;
 }
 
@@ -79,13 +78,13 @@ const std::vector<IndexColumn>& fixed_columns() {
 
 }  // namespace
 
-ordered_json to_json(const Layout& layout) {
+Json to_json(const Layout& layout) {
   return {{"parameters", columns_json(layout.parameters)},
           {"figures", columns_json(layout.figures)},
           {"timing", columns_json(layout.timing)}};
 }
 
-Layout layout_of(const ordered_json& json) {
+Layout layout_of(const Json& json) {
   return {columns_of(json.at("parameters")), columns_of(json.at("figures")), columns_of(json.at("timing"))};
 }
 
@@ -125,9 +124,8 @@ void Index::check_version(const std::string& version) {
          "folder with -o",
          database_->path(), shown(made_by, 80), version);
   try {
-    layout_ =
-        layout_of(ordered_json::parse(plain_text(database_->value("SELECT value FROM meta WHERE name = 'layout'"))));
-  } catch (const ordered_json::exception&) {
+    layout_ = layout_of(parse_json(plain_text(database_->value("SELECT value FROM meta WHERE name = 'layout'"))));
+  } catch (const Json::exception&) {
     refuse_damaged(database_->path(), "no layout");
   }
   check_tables();
@@ -186,7 +184,7 @@ void Index::make_tables(const std::string& version) {
       }
     Statement meta = database_->prepare("INSERT INTO meta VALUES (?, ?)");
     for (const auto& [name, value] :
-         {std::pair<std::string, std::string>{"version", version}, {"layout", to_json(layout_).dump()}}) {
+         {std::pair<std::string, std::string>{"version", version}, {"layout", json_text(to_json(layout_))}}) {
       meta.bind(1, name);
       meta.bind(2, value);
       meta.step();

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/batch/answer.hpp"
 #include "engine/batch/database.hpp"
 
@@ -28,8 +29,8 @@ struct Layout {
   std::vector<IndexColumn> parameters, figures, timing;
 };
 
-[[nodiscard]] nlohmann::ordered_json to_json(const Layout& layout);
-[[nodiscard]] Layout layout_of(const nlohmann::ordered_json& json);
+[[nodiscard]] Json to_json(const Layout& layout);
+[[nodiscard]] Layout layout_of(const Json& json);
 
 /// What stands in a row of `run` besides the answer.
 struct RowHead {

@@ -1,4 +1,5 @@
 #include "engine/batch/merge.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,8 +12,6 @@
 #include "engine/batch/index.hpp"
 
 namespace verisim::batch {
-
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -54,7 +53,7 @@ void copy_run_files(const std::string& from, const std::string& to, const std::v
 }  // namespace
 
 void merge(const std::string& out, const std::vector<std::string>& shards, const std::string& version) {
-  ordered_json manifest = read_manifest(shards.front());
+  Json manifest = read_manifest(shards.front());
   std::vector<std::string> ignored = kOfTheMaking;
   ignored.emplace_back("shard");
   for (const std::string& shard : shards) {
@@ -68,7 +67,7 @@ void merge(const std::string& out, const std::vector<std::string>& shards, const
   manifest[kShardsMerged] = shards.size();
   if (identity_of(out + "/batch.json") && !is_half_merged(read_any_manifest(out)))
     fail(ErrorKind::input, "{}: holds a batch already; name a new folder to merge into", out);
-  ordered_json unfinished = manifest;
+  Json unfinished = manifest;
   unfinished[kMerging] = true;
   Folder folder(out, unfinished);
   Index index(index_of(out), Index::open(index_of(shards.front()), version).layout(), version);

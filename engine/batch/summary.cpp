@@ -1,4 +1,5 @@
 #include "engine/batch/summary.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +9,6 @@
 #include "engine/base/text_table.hpp"
 
 namespace verisim::batch {
-
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -87,19 +86,18 @@ Summary summarize(Index& index, const std::vector<std::string>& keys, std::uint6
   return summary;
 }
 
-ordered_json to_json(const Summary& summary) {
-  ordered_json groups = ordered_json::array();
+Json to_json(const Summary& summary) {
+  Json groups = Json::array();
   for (const Group& group : summary.groups) {
-    ordered_json parameters = ordered_json::object(), outcomes = ordered_json::object(),
-                 measures = ordered_json::object();
+    Json parameters = Json::object(), outcomes = Json::object(), measures = Json::object();
     for (std::size_t i = 0; i < summary.keys.size(); ++i) parameters[summary.keys[i]] = json_of(group.values[i]);
     for (const Share& s : group.shares)
       outcomes[s.outcome] = {
           {"count", s.count}, {"share", s.share}, {"low", s.interval.low}, {"high", s.interval.high}};
     for (const Mean& m : group.means)
       measures[m.name] = {{"mean", m.mean},
-                          {"low", m.interval ? ordered_json(m.interval->low) : ordered_json()},
-                          {"high", m.interval ? ordered_json(m.interval->high) : ordered_json()},
+                          {"low", m.interval ? Json(m.interval->low) : Json()},
+                          {"high", m.interval ? Json(m.interval->high) : Json()},
                           {"unit", m.unit},
                           {"runs", m.runs}};
     groups.push_back(

@@ -1,11 +1,11 @@
 // What a batch came to: per group of parameters the shares of outcomes and the means of measures, with intervals.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/batch/index.hpp"
 #include "engine/batch/intervals.hpp"
 
@@ -41,7 +41,7 @@ struct Summary {
 /// @param seed the batch's
 [[nodiscard]] Summary summarize(Index& index, const std::vector<std::string>& keys, std::uint64_t seed);
 
-[[nodiscard]] nlohmann::ordered_json to_json(const Summary& summary);
+[[nodiscard]] Json to_json(const Summary& summary);
 /// Columns that line up; of more than 40 groups the first, and how many there are.
 [[nodiscard]] std::string table_of(const Summary& summary);
 

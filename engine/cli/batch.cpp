@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/base/user_file.hpp"
 #include "engine/batch/conditions.hpp"
@@ -23,7 +23,6 @@
 #include "engine/cli/streams.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/session/interrupts.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/origin.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/progress_line.hpp"
@@ -37,7 +36,6 @@ namespace fs = std::filesystem;
 using batch::Answer;
 using batch::Cell;
 using batch::Design;
-using nlohmann::ordered_json;
 
 struct BatchOptions {
   std::string scenario, out, design_file, keep = "summary", shard, simd;
@@ -75,7 +73,7 @@ class Batch {
   Design read_design();
   void check_inputs();
   void say_what_was_not_kept();
-  [[nodiscard]] ordered_json manifest() const;
+  [[nodiscard]] Json manifest() const;
   [[nodiscard]] std::string work(std::uint64_t run) const;
   void take(const batch::WorkerEnd& end);
   [[nodiscard]] Answer answer_to(const batch::WorkerEnd& end) const;
@@ -160,19 +158,19 @@ Design Batch::read_design() {
   request.seed = o_.seed;
   request.shard = o_.shard;
   return batch::make_design(request, [&](const std::string& option, const std::string& key, const std::string& text) {
-    return batch::cell_of(ordered_json::parse(parameters.value_of(key, text, option)));
+    return batch::cell_of(parse_json(parameters.value_of(key, text, option)));
   });
 }
 
-ordered_json Batch::manifest() const {
-  ordered_json design = batch::to_json(design_);
-  design["set"] = ordered_json::object();
+Json Batch::manifest() const {
+  Json design = batch::to_json(design_);
+  design["set"] = Json::object();
   for (const ParameterDeclaration& p : declared_)
     for (const auto& [key, value] : run_options_.scenario.sets)
-      if (key == p.name) design["set"][key] = ordered_json::parse(p.value_json);
-  design["bind"] = ordered_json::object();
+      if (key == p.name) design["set"][key] = parse_json(p.value_json);
+  design["bind"] = Json::object();
   for (const auto& [name, source] : run_options_.scenario.binds) design["bind"][name] = source;
-  design["duration"] = o_.duration ? ordered_json(*o_.duration) : ordered_json();
+  design["duration"] = o_.duration ? Json(*o_.duration) : Json();
   design["measure"] = o_.measure;
   const bool whole = design_.shard.of == 1;
   return {{"format", "verisim-batch"},
@@ -182,7 +180,7 @@ ordered_json Batch::manifest() const {
           {"scenario", run_options_.scenario.path},
           {"scenario_sha256", scenario_sha256_},
           {"seed", design_.seed},
-          {"shard", whole ? ordered_json() : ordered_json{{"index", design_.shard.index}, {"of", design_.shard.of}}},
+          {"shard", whole ? Json() : Json{{"index", design_.shard.index}, {"of", design_.shard.of}}},
           {"design", design},
           {"runs", design_.runs()},
           {"groups", design_.group_keys()},
@@ -199,7 +197,7 @@ batch::RowHead Batch::head_of(const batch::Point& point, const Answer& answer) c
   const std::vector<std::string> keys = design_.keys();
   for (const ParameterDeclaration& p : declared_) {
     const auto used = answer.parameters.find(p.name);
-    Cell cell = used != answer.parameters.end() ? used->second : batch::cell_of(ordered_json::parse(p.value_json));
+    Cell cell = used != answer.parameters.end() ? used->second : batch::cell_of(parse_json(p.value_json));
     for (std::size_t i = 0; i < keys.size(); ++i)
       if (keys[i] == p.name) cell = point.values[i].cell;
     head.parameters.push_back(std::move(cell));
@@ -329,7 +327,7 @@ void Batch::forget_failed() {
 /// The CSVs, and what the times hang on into batch.json.
 void Batch::close_index() {
   index_->write_csv(folder_->path());
-  ordered_json manifest = batch::read_manifest(folder_->path());
+  Json manifest = batch::read_manifest(folder_->path());
   manifest[batch::kComputed] = batch::conditions_json(*index_);
   folder_->write_manifest(manifest);
 }
@@ -390,7 +388,7 @@ void Batch::report() {
     std::printf("%s", table_of(*index_, summary, folder_->path()).c_str());
     return;
   }
-  ordered_json json = json_of(*index_, summary, folder_->path());
+  Json json = json_of(*index_, summary, folder_->path());
   json["wall_s"] = wall_s_;
   json["jobs"] = jobs_;
   std::printf("%s\n", json_text(json).c_str());

@@ -2,16 +2,14 @@
 
 #include <cstdio>
 
+#include "engine/base/json.hpp"
 #include "engine/batch/folder.hpp"
 #include "engine/batch/merge.hpp"
 #include "engine/batch/summary.hpp"
 #include "engine/cli/batch_output.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/stop_watch.hpp"
 
 namespace verisim::cli {
-
-using nlohmann::ordered_json;
 
 CLI::App* add_merge(CLI::App& batch, MergeOptions& options) {
   auto* merge = batch.add_subcommand("merge", "Joins the folders of shards");
@@ -27,10 +25,10 @@ int run_merge(const MergeOptions& o) {
   const StopWatch watch;
   batch::merge(o.out, o.shards, program_version());
   batch::Index index = batch::Index::open(batch::index_of(o.out), program_version());
-  const ordered_json manifest = batch::read_manifest(o.out);
+  const Json manifest = batch::read_manifest(o.out);
   if (!o.quiet || o.json) {
     const batch::Summary summary = batch::summarize(index, manifest.at("groups"), manifest.at("seed"));
-    ordered_json json = json_of(index, summary, o.out);
+    Json json = json_of(index, summary, o.out);
     json["wall_s"] = watch.seconds();
     json["jobs"] = 1;
     std::printf("%s", o.json ? (json_text(json) + "\n").c_str() : table_of(index, summary, o.out).c_str());

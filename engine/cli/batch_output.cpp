@@ -1,4 +1,5 @@
 #include "engine/cli/batch_output.hpp"
+#include "engine/base/json.hpp"
 
 #include "engine/base/text.hpp"
 #include "engine/cli/streams.hpp"
@@ -6,14 +7,12 @@
 
 namespace verisim::cli {
 
-using nlohmann::ordered_json;
-
 std::string program_version() {
   return std::string(VERISIM_VERSION) + " (commit " + commit() + ")";
 }
 
-ordered_json json_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
-  ordered_json json = {{"folder", folder}, {"runs", index.runs().size()}};
+Json json_of(batch::Index& index, const batch::Summary& summary, const std::string& folder) {
+  Json json = {{"folder", folder}, {"runs", index.runs().size()}};
   for (const char* status : batch::kStatuses) json[status] = index.count(status);
   json["groups"] = to_json(summary);
   return json;

@@ -1,9 +1,9 @@
 // What `verisim batch` and `batch merge` say at their end.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "engine/base/json.hpp"
 #include "engine/batch/index.hpp"
 #include "engine/batch/summary.hpp"
 
@@ -13,8 +13,7 @@ namespace verisim::cli {
 [[nodiscard]] std::string program_version();
 
 /// Counts and groups of a folder's index.
-[[nodiscard]] nlohmann::ordered_json json_of(batch::Index& index, const batch::Summary& summary,
-                                             const std::string& folder);
+[[nodiscard]] Json json_of(batch::Index& index, const batch::Summary& summary, const std::string& folder);
 [[nodiscard]] std::string table_of(batch::Index& index, const batch::Summary& summary, const std::string& folder);
 
 /// 1 if some runs could not be done, and a line on stderr that says so.

@@ -1,9 +1,9 @@
 #include "engine/cli/batch_worker.hpp"
+#include "engine/base/json.hpp"
 
 #include <cctype>
 #include <filesystem>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "engine/base/error.hpp"
@@ -182,7 +182,7 @@ void add_warnings(Answer& answer, const std::vector<std::string>& of_scene, cons
 
 /// Parameters as the run used them: precision = "auto" chooses some, and some are overruled.
 void add_parameters(Answer& answer, const Session& session) {
-  const auto parameters = nlohmann::ordered_json::parse(session.scenario->parameters_in_effect_json());
+  const auto parameters = parse_json(session.scenario->parameters_in_effect_json());
   for (const auto& [name, value] : parameters.items()) answer.parameters[name] = batch::cell_of(value);
 }
 

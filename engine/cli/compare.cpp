@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/user_file.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
@@ -14,7 +15,6 @@
 #include "engine/compare/history.hpp"
 #include "engine/compare/report.hpp"
 #include "engine/compare/runs.hpp"
-#include "engine/session/json_text.hpp"
 
 namespace verisim::cli {
 namespace {

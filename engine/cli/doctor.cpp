@@ -5,21 +5,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "engine/base/json.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/geometry/loader.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/origin.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/realtime_priority.hpp"
 
 namespace verisim::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 /// The shortest time between two different readings of the clock [ns].
 std::int64_t clock_step_ns() {
@@ -65,8 +62,8 @@ std::string prepared_text() {
   return fmt::format("{}: {} entries, {:.1f} MB", folder, size.entries, static_cast<double>(size.bytes) / 1e6);
 }
 
-ordered_json examine() {
-  ordered_json j;
+Json examine() {
+  Json j;
   j["version"] = VERISIM_VERSION;
   j["commit"] = commit();
   j["compiler"] = compiler();
@@ -94,7 +91,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->add_flag("--json", *as_json, "One JSON object on stdout");
   command->footer("Example: verisim doctor");
   command->callback([=, &exit_code] {
-    const ordered_json report = examine();
+    const Json report = examine();
     if (*as_json)
       std::printf("%s\n", json_text(report).c_str());
     else

@@ -1,24 +1,21 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/inspect_scenario.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/geometry/loader.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/simulation/inputs.hpp"
 #include "engine/voxel/association.hpp"
 #include "engine/voxel/voxelize.hpp"
 
 namespace verisim::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct InspectOptions {
   std::string model;
@@ -66,24 +63,24 @@ VoxelStatistics voxel_statistics(const Part& part, double voxel_size) {
 }
 
 template <typename Kinds>
-ordered_json counts(const Kinds& names, const std::vector<std::size_t>& indices) {
-  ordered_json j;
+Json counts(const Kinds& names, const std::vector<std::size_t>& indices) {
+  Json j;
   for (const char* name : names) j[name] = 0;
   for (const std::size_t i : indices) j[names[i]] = j[names[i]].template get<int>() + 1;
   return j;
 }
 
-ordered_json json_of(const Vector3d& v) {
+Json json_of(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-ordered_json json_of(const Part& part, double density) {
+Json json_of(const Part& part, double density) {
   const Bounds bounds = bounds_of(part.mesh);
   std::vector<std::size_t> faces;
   std::vector<std::size_t> edges;
   for (const Face& face : part.faces) faces.push_back(face.surface.index());
   for (const Edge& edge : part.edges) edges.push_back(edge.curve.index());
-  ordered_json j;
+  Json j;
   j["name"] = part.name;
   j["color"] = part.color;
   j["volume_m3"] = part.mass.volume;
@@ -94,7 +91,7 @@ ordered_json json_of(const Part& part, double density) {
   j["watertight"] = part.watertight;
   j["faces"] = counts(kSurfaceNames, faces);
   j["edges"] = counts(kCurveNames, edges);
-  j["cylinders"] = ordered_json::array();
+  j["cylinders"] = Json::array();
   for (const Face& face : part.faces)
     if (const auto* c = std::get_if<Cylinder>(&face.surface))
       j["cylinders"].push_back({{"axis_point", json_of(c->point)},
@@ -106,7 +103,7 @@ ordered_json json_of(const Part& part, double density) {
   return j;
 }
 
-ordered_json json_of(const Mate& mate) {
+Json json_of(const Mate& mate) {
   return {{"part_a", mate.part_a},
           {"part_b", mate.part_b},
           {"radius_hole_m", mate.radius_hole},
@@ -114,14 +111,14 @@ ordered_json json_of(const Mate& mate) {
           {"clearance_m", mate.clearance()}};
 }
 
-std::string listed(const ordered_json& counted) {
+std::string listed(const Json& counted) {
   std::string text;
   for (const auto& [name, count] : counted.items())
     if (count.get<int>() > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.get<int>(), name);
   return text.empty() ? "none known" : text;
 }
 
-void print_inspection(const ordered_json& report) {
+void print_inspection(const Json& report) {
   for (const auto& p : report["parts"]) {
     const auto row = [](const char* name, const std::string& value) {
       std::printf("  %-16s%s\n", name, value.c_str());
@@ -164,11 +161,11 @@ void inspect_model(const InspectOptions& o) {
   load.deflection = o.deflection;
   load.recover = true;
   const std::vector<Part>& parts = inputs.model(o.model, load);
-  ordered_json report;
+  Json report;
   report["model"] = o.model;
-  report["parts"] = ordered_json::array();
+  report["parts"] = Json::array();
   for (const Part& part : parts) {
-    ordered_json j = json_of(part, o.density);
+    Json j = json_of(part, o.density);
     for (const std::string& warning : warnings_about(part)) {
       std::fprintf(stderr, "warning: %s: '%s': %s\n", o.model.c_str(), part.name.c_str(), shown(warning).c_str());
       j["notes"].push_back(warning);
@@ -182,7 +179,7 @@ void inspect_model(const InspectOptions& o) {
     }
     report["parts"].push_back(std::move(j));
   }
-  report["mates"] = ordered_json::array();
+  report["mates"] = Json::array();
   for (const Mate& mate : mating_candidates(parts)) report["mates"].push_back(json_of(mate));
   if (o.json)
     std::printf("%s\n", json_text(report).c_str());

@@ -2,19 +2,16 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text_table.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/session.hpp"
 #include "engine/simulation/plan.hpp"
 
 namespace verisim::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 const char* word_of(BodyPlan::Prepared prepared) {
   switch (prepared) {
@@ -34,7 +31,7 @@ std::string made_of(const BodyPlan& body) {
   return std::string("voxels") + (body.entities ? ", faces of voxels" : "") + (body.exact ? ", exact surfaces" : "");
 }
 
-ordered_json json_of(const BodyPlan& body) {
+Json json_of(const BodyPlan& body) {
   return {{"name", body.name},
           {"moves", body.can_move},
           {"mass_kg", body.mass},
@@ -49,34 +46,33 @@ ordered_json json_of(const BodyPlan& body) {
           {"memory_bytes", body.voxel_bytes}};
 }
 
-ordered_json report_of(const ScenarioOptions& options, const Scenario& scenario, const Scene& scene,
-                       const ScenePlan& plan) {
-  ordered_json report;
+Json report_of(const ScenarioOptions& options, const Scenario& scenario, const Scene& scene, const ScenePlan& plan) {
+  Json report;
   report["scenario"] = std::filesystem::path(options.path).filename().string();
-  report["parameters"] = ordered_json::parse(scenario.parameters_json());
+  report["parameters"] = parse_json(scenario.parameters_json());
   report["method"] = plan.method;
   report["integrator"] = plan.integrator == Integrator::implicit ? "implicit" : "semi-implicit";
   report["timestep_s"] = scene.parameters.timestep;
   double memory = 0;
-  report["bodies"] = ordered_json::array();
+  report["bodies"] = Json::array();
   for (const BodyPlan& body : plan.bodies) {
     report["bodies"].push_back(json_of(body));
     memory += body.voxel_bytes;
   }
   report["memory_bytes"] = memory;
-  report["pairs"] = ordered_json::array();
+  report["pairs"] = Json::array();
   for (const auto& [i, j] : plan.pairs) report["pairs"].push_back({plan.bodies[i].name, plan.bodies[j].name});
-  report["devices"] = ordered_json::array();
+  report["devices"] = Json::array();
   for (const auto& device : scene.devices)
     report["devices"].push_back(
         {{"name", device->name()}, {"chain", device->described()}, {"driven", device->driven()}});
-  report["companions"] = ordered_json::array();
+  report["companions"] = Json::array();
   for (const auto& companion : scene.companions) report["companions"].push_back(companion->name());
   report["notices"] = scenario.notices();
   return report;
 }
 
-void print_report(const ScenePlan& plan, const ordered_json& report) {
+void print_report(const ScenePlan& plan, const Json& report) {
   std::printf("%s: bodies %zu, pairs that can meet %zu, method %s, %s steps of %g s\n",
               report["scenario"].get<std::string>().c_str(), plan.bodies.size(), plan.pairs.size(),
               std::string(plan.method).c_str(), report["integrator"].get<std::string>().c_str(),
@@ -101,7 +97,7 @@ void inspect_scenario(const ScenarioOptions& options, bool json) {
   Scenario scenario(options, inputs);
   const Scene scene = scenario.take_scene();
   const ScenePlan plan = plan_of(scene);
-  const ordered_json report = report_of(options, scenario, scene, plan);
+  const Json report = report_of(options, scenario, scene, plan);
   if (json)
     std::printf("%s\n", json_text(report).c_str());
   else

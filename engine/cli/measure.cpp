@@ -1,4 +1,5 @@
 #include "engine/cli/measure.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +12,6 @@
 
 namespace verisim::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 const char* name_of(ruler::Source source) {
   switch (source) {
@@ -214,10 +213,10 @@ std::string table_of(const std::vector<MeasuredPair>& pairs) {
   return text;
 }
 
-ordered_json json_of(const std::vector<MeasuredPair>& pairs) {
-  ordered_json json = {{"pairs", ordered_json::array()}};
+Json json_of(const std::vector<MeasuredPair>& pairs) {
+  Json json = {{"pairs", Json::array()}};
   for (const MeasuredPair& pair : pairs) {
-    ordered_json row = {{"first", pair.first}, {"second", pair.second}};
+    Json row = {{"first", pair.first}, {"second", pair.second}};
     if (!pair.why_not.empty()) {
       row["not_measured"] = pair.why_not;
     } else {

@@ -1,10 +1,10 @@
 // `verisim replay --measure`: the recorded penetration of each pair beside its true overlap (engine/ruler).
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/record/run_file.hpp"
 #include "engine/ruler/ruler.hpp"
 #include "engine/session/progress_line.hpp"
@@ -47,6 +47,6 @@ struct MeasuredPair {
                                                     const ProgressLine& line);
 
 [[nodiscard]] std::string table_of(const std::vector<MeasuredPair>& pairs);
-[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<MeasuredPair>& pairs);
+[[nodiscard]] Json json_of(const std::vector<MeasuredPair>& pairs);
 
 }  // namespace verisim::cli

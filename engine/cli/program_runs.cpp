@@ -1,4 +1,5 @@
 #include "engine/cli/program_runs.hpp"
+#include "engine/base/json.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -10,7 +11,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
@@ -28,7 +28,6 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char* kTimesBeginning = "pair,program";
 
@@ -110,7 +109,7 @@ class Times {
  public:
   explicit Times(const ProgramRun& example) {
     figures_ = {{"process_s", "s"}, {"cpu_s", "s"}};
-    const json said = json::parse(example.said, nullptr, false);
+    const Json said = parse_json_or_discard(example.said);
     for (const char* name : {"load_s", "wall_s"})
       if (said.is_object() && said.contains(name) && said[name].is_number()) figures_.push_back({name, "s"});
     for (const char* name : {"frame_ns", "collision_frame_ns"})
@@ -122,14 +121,14 @@ class Times {
   /// Error(input) if a time is missing or not above 0.
   [[nodiscard]] compare::RunTimes of(const std::string& program, const ProgramRun& run) const {
     compare::RunTimes times = {run.process_s, run.cpu_s};
-    const json said = json::parse(run.said, nullptr, false);
+    const Json said = parse_json_or_discard(run.said);
     for (std::size_t i = times.size(); i < figures_.size(); ++i) {
       const std::string& name = figures_[i].name;
       const bool is_quantile = name.ends_with(".p50");
       const std::string key = is_quantile ? name.substr(0, name.size() - 4) : name;
-      const json value = !said.is_object()                   ? json()
-                         : is_quantile && said.contains(key) ? said[key].value("p50", json())
-                                                             : said.value(key, json());
+      const Json value = !said.is_object()                   ? Json()
+                         : is_quantile && said.contains(key) ? said[key].value("p50", Json())
+                                                             : said.value(key, Json());
       times.push_back(value.is_number() ? value.get<double>() : 0.0);
     }
     for (std::size_t i = 0; i < times.size(); ++i)

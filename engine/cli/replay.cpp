@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/measure.hpp"
@@ -12,7 +13,6 @@
 #include "engine/cli/stored_facts.hpp"
 #include "engine/cli/stored_run.hpp"
 #include "engine/contact/query.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/origin.hpp"
 #include "engine/session/session.hpp"
 #include "engine/session/summary.hpp"
@@ -71,8 +71,7 @@ std::vector<MeasuredPair> measured(const Replay& asked, const RunFile& file, std
 void tell(const Replay& asked, const RunFile& file, const std::string& hash, const std::vector<MeasuredPair>& measured,
           const SimulateOptions& o) {
   if (o.json) {
-    nlohmann::ordered_json report = {
-        {"run_file", asked.path}, {"frames", file.rows()}, {"state_hash", hash}, {"verified", asked.verify}};
+    Json report = {{"run_file", asked.path}, {"frames", file.rows()}, {"state_hash", hash}, {"verified", asked.verify}};
     if (asked.measure) report["measured"] = json_of(measured);
     std::printf("%s\n", json_text(report).c_str());
   } else if (!o.quiet) {

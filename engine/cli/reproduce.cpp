@@ -1,14 +1,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/scenarios_folder.hpp"
 #include "engine/record/file_replace.hpp"
 #include "engine/reproduce/reproductions.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/progress_line.hpp"
 #include "engine/session/recorded_run.hpp"
@@ -18,7 +17,6 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 using reproduce::Reproduction;
 
@@ -53,28 +51,28 @@ reproduce::TimedRun run_scenario(const std::string& folder, const reproduce::Run
           std::move(run.loop.block_overruns), std::move(run.loop.empty_block_overruns)};
 }
 
-ordered_json json_of_figure(const reproduce::Figure& figure) {
+Json json_of_figure(const reproduce::Figure& figure) {
   if (const auto* words = std::get_if<std::string>(&figure)) return *words;
   return std::get<double>(figure);
 }
 
-ordered_json json_of_row(const reproduce::Row& row) {
+Json json_of_row(const reproduce::Row& row) {
   const std::optional<double> q = ratio(row);
-  ordered_json j = {{"id", row.id},
-                    {"what", row.what},
-                    {"unit", row.unit},
-                    {"published", json_of_figure(row.published)},
-                    {"here", json_of_figure(row.here)},
-                    {"ratio", q ? ordered_json(*q) : ordered_json()},
-                    {"why", row.why},
-                    {"runs", row.runs}};
+  Json j = {{"id", row.id},
+            {"what", row.what},
+            {"unit", row.unit},
+            {"published", json_of_figure(row.published)},
+            {"here", json_of_figure(row.here)},
+            {"ratio", q ? Json(*q) : Json()},
+            {"why", row.why},
+            {"runs", row.runs}};
   if (row.interval) j["interval_95"] = {row.interval->first, row.interval->second};
   return j;
 }
 
 /// Every row, and every file that one of them comes from, once.
 std::string json_of_rows(const std::vector<reproduce::Row>& rows) {
-  ordered_json j = {{"rows", ordered_json::array()}, {"runs", ordered_json::array()}};
+  Json j = {{"rows", Json::array()}, {"runs", Json::array()}};
   for (const reproduce::Row& row : rows) {
     j["rows"].push_back(json_of_row(row));
     for (const std::string& file : row.runs)

@@ -6,19 +6,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
-#include "engine/session/json_text.hpp"
 #include "firmware_sim/protocol/frame.hpp"
 
 namespace verisim::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 const std::vector<std::string>& robot_collections() {
   static const std::vector<std::string> names{protocol::ComputerToRobot::name(), protocol::RobotToComputer::name(),
@@ -38,10 +35,10 @@ void with_robot_collection(const std::string& name, Use&& use) {
 
 /// The fields of a message as JSON. What is no number in JSON is null, and its bits tell what it is.
 struct FieldsAsJson {
-  ordered_json args = ordered_json::array(), bits = ordered_json::array();
+  Json args = Json::array(), bits = Json::array();
   void operator()(const std::int16_t& field) { args.push_back(field); }
   void operator()(const float& field) {
-    args.push_back(std::isfinite(field) ? ordered_json(static_cast<double>(field)) : ordered_json(nullptr));
+    args.push_back(std::isfinite(field) ? Json(static_cast<double>(field)) : Json(nullptr));
     bits.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(field)));
   }
 };
@@ -52,7 +49,7 @@ struct PrintMessage {
   void operator()(const Message& message) {
     FieldsAsJson fields;
     Message::visit(message, fields);
-    ordered_json line{{"message", Message::name()}, {"id", protocol::id_of<Named, Message>()}, {"args", fields.args}};
+    Json line{{"message", Message::name()}, {"id", protocol::id_of<Named, Message>()}, {"args", fields.args}};
     if (!fields.bits.empty()) line["bits"] = fields.bits;
     std::printf("%s\n", json_text(line).c_str());
   }

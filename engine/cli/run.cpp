@@ -1,14 +1,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "engine/base/json.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/streams.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/script/parameters.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/recorded_run.hpp"
 
@@ -23,17 +22,15 @@ std::string default_run_file(const std::string& scenario) {
 
 /// What can be set: for people, or as JSON.
 std::string text_of(const std::vector<ParameterDeclaration>& parameters, bool as_json) {
-  using nlohmann::ordered_json;
-  ordered_json list = ordered_json::array();
+  Json list = Json::array();
   std::string table = fmt::format("{:<20} {:<20} {:<6} {}\n", "parameter", "default", "unit", "meaning");
   for (const ParameterDeclaration& p : parameters) {
-    list.push_back(
-        {{"name", p.name}, {"default", ordered_json::parse(p.value_json)}, {"unit", p.unit}, {"meaning", p.meaning}});
+    list.push_back({{"name", p.name}, {"default", parse_json(p.value_json)}, {"unit", p.unit}, {"meaning", p.meaning}});
     std::string row = fmt::format("{:<20} {:<20} {:<6} {}", p.name, p.value_json, p.unit, p.meaning);
     row.erase(row.find_last_not_of(' ') + 1);
     table += row + "\n";
   }
-  if (as_json) return json_text(ordered_json{{"parameters", list}}) + "\n";
+  if (as_json) return json_text(Json{{"parameters", list}}) + "\n";
   return parameters.empty() ? "this scenario has no parameters\n" : table;
 }
 

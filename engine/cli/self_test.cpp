@@ -1,4 +1,5 @@
 #include "engine/cli/self_test.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 
@@ -84,8 +85,8 @@ std::string table_of(const SelfTest& test) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const SelfTest& test) {
-  nlohmann::ordered_json j = {{"from", test.from}, {"kept", test.kept}, {"rates", nlohmann::ordered_json::array()}};
+Json json_of(const SelfTest& test) {
+  Json j = {{"from", test.from}, {"kept", test.kept}, {"rates", Json::array()}};
   for (const Rate& rate : test.rates)
     j["rates"].push_back({{"order", name_of(rate.asked.order)},
                           {"repetitions", rate.asked.repetitions},

@@ -1,10 +1,10 @@
 // `verisim compare --self-test`: how often compare errs.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/compare/rates.hpp"
 
 namespace verisim::cli {
@@ -24,6 +24,6 @@ struct SelfTest {
 [[nodiscard]] SelfTest self_test(const std::string& times_file, bool quiet);
 
 [[nodiscard]] std::string table_of(const SelfTest& test);
-[[nodiscard]] nlohmann::ordered_json json_of(const SelfTest& test);
+[[nodiscard]] Json json_of(const SelfTest& test);
 
 }  // namespace verisim::cli

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/batch/workers.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
@@ -14,7 +15,6 @@
 #include "engine/cli/stability_output.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/session/interrupts.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/prepared_parts.hpp"
 #include "engine/session/progress_line.hpp"
 #include "engine/session/session.hpp"
@@ -26,7 +26,6 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 using stability::Row;
 using stability::RowKind;
 using stability::Task;
@@ -147,7 +146,7 @@ std::vector<StabilityRow> compute(std::vector<Task> tasks, const StabilityOption
     while (begun < rows.size() && workers.is_free()) workers.begin(begun++);
     for (const batch::WorkerEnd& end : workers.wait(0.2)) {
       StabilityRow& row = rows[end.run];
-      row.row = end.exit_code == 0 ? row_of(ordered_json::parse(end.answer)) : lost(row.task, end);
+      row.row = end.exit_code == 0 ? row_of(parse_json(end.answer)) : lost(row.task, end);
       row.cpu_s = end.user_s + end.system_s;
       ++done;
     }

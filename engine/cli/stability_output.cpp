@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/json.hpp"
 #include "engine/base/text_table.hpp"
 #include "engine/record/file_replace.hpp"
 #include "engine/record/output_place.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/recorded_run.hpp"
 #include "engine/stability/map_picture.hpp"
 #include "engine/stability/maps.hpp"
@@ -17,7 +17,6 @@
 namespace verisim::cli {
 namespace {
 
-using nlohmann::ordered_json;
 using stability::Figure;
 using stability::MapDescription;
 using stability::Row;
@@ -151,19 +150,17 @@ void write_file(const std::string& path, const std::string& content) {
 
 }  // namespace
 
-ordered_json json_of(const Row& row) {
-  ordered_json j = {
-      {"what", row.what}, {"outcome", name_of(row.outcome)}, {"theory", row.theory}, {"holds", row.holds}};
+Json json_of(const Row& row) {
+  Json j = {{"what", row.what}, {"outcome", name_of(row.outcome)}, {"theory", row.theory}, {"holds", row.holds}};
   if (!row.why.empty()) j["why"] = row.why;
   for (const Figure& figure : row.figures) {
     const bool finite = std::isfinite(figure.value);
-    j["figures"][figure.name] = {{"value", finite ? ordered_json(figure.value) : ordered_json()},
-                                 {"unit", figure.unit}};
+    j["figures"][figure.name] = {{"value", finite ? Json(figure.value) : Json()}, {"unit", figure.unit}};
   }
   return j;
 }
 
-Row row_of(const ordered_json& j) {
+Row row_of(const Json& j) {
   Row row;
   row.what = j.at("what");
   const std::string outcome = j.at("outcome");
@@ -174,19 +171,19 @@ Row row_of(const ordered_json& j) {
   row.why = j.value("why", "");
   if (!j.contains("figures")) return row;
   for (const auto& [name, figure] : j.at("figures").items()) {
-    const ordered_json& value = figure.at("value");
+    const Json& value = figure.at("value");
     row.figures.push_back({name, figure.at("unit"), value.is_null() ? std::nan("") : value.get<double>()});
   }
   return row;
 }
 
-ordered_json json_of(const std::vector<StabilityRow>& rows) {
-  ordered_json j = {{"definitions", stability::definitions()},
-                    {"maps", ordered_json::array()},
-                    {"extremes", ordered_json::array()},
-                    {"ledgers", ordered_json::array()}};
+Json json_of(const std::vector<StabilityRow>& rows) {
+  Json j = {{"definitions", stability::definitions()},
+            {"maps", Json::array()},
+            {"extremes", Json::array()},
+            {"ledgers", Json::array()}};
   for (const auto& [task, row, cpu_s] : rows) {
-    ordered_json one = json_of(row);
+    Json one = json_of(row);
     if (task.kind == RowKind::extreme || task.kind == RowKind::ledger) {
       j[task.kind == RowKind::extreme ? "extremes" : "ledgers"].push_back(std::move(one));
       continue;

@@ -1,17 +1,17 @@
 // What `verisim stability` prints and writes: tables, JSON, CSV, pictures.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/stability/row.hpp"
 
 namespace verisim::cli {
 
 /// A row as one JSON object, and back. Numbers that are not finite are null.
-[[nodiscard]] nlohmann::ordered_json json_of(const stability::Row& row);
-[[nodiscard]] stability::Row row_of(const nlohmann::ordered_json& json);
+[[nodiscard]] Json json_of(const stability::Row& row);
+[[nodiscard]] stability::Row row_of(const Json& json);
 
 /// A task with what it came to.
 struct StabilityRow {
@@ -21,7 +21,7 @@ struct StabilityRow {
 };
 
 /// {"definitions": …, "maps": …, "extremes": …, "ledgers": …, "failed": …} (INTERFACES section 5).
-[[nodiscard]] nlohmann::ordered_json json_of(const std::vector<StabilityRow>& rows);
+[[nodiscard]] Json json_of(const std::vector<StabilityRow>& rows);
 /// The same for people.
 [[nodiscard]] std::string tables_of(const std::vector<StabilityRow>& rows);
 /// Rows of which something is promised that does not hold: a bound beyond its tolerance, a cell that theory

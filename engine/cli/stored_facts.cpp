@@ -1,10 +1,10 @@
 #include "engine/cli/stored_facts.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/base/error.hpp"
@@ -14,7 +14,6 @@
 namespace verisim::cli {
 namespace {
 
-using nlohmann::json;
 using Attributes = std::map<std::string, Attribute>;
 
 const Attribute* find(const Attributes& attributes, const std::string& name) {
@@ -88,11 +87,12 @@ std::set<std::string> attributes_of_once() {
 
 /// The JSON text without what no replay computes again. Text that is no JSON stays as it is.
 std::string without_what_is_once(const std::string& text) {
-  json j = json::parse(text, nullptr, false);
+  Json j = parse_json_or_discard(text);
   if (!j.is_object()) return text;
   for (const RunFigure& figure : run_figures())
     if (figure.only_once) j.erase(figure.name);
-  return j.dump();
+  const std::map<std::string, Json> sorted = j;  // another version may have written them in another order
+  return json_text(sorted);
 }
 
 std::string difference_in_figures(const RunFile& file, const Attributes& simulated) {

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
@@ -14,20 +14,17 @@
 #include "engine/record/synth.hpp"
 #include "engine/record/trace.hpp"
 #include "engine/robot/drive.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/simulation/inputs.hpp"
 
 namespace verisim::cli {
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string content_of(const std::string& file) {
   return Inputs::live(".", {file}).read(file);
 }
 
-ordered_json describe(const Trace& trace) {
-  ordered_json j;
+Json describe(const Trace& trace) {
+  Json j;
   const std::size_t n = trace.rows();
   j["kind"] = trace.kind;
   if (trace.rate_hz > 0) j["rate_hz"] = trace.rate_hz;
@@ -59,7 +56,7 @@ ordered_json describe(const Trace& trace) {
   return j;
 }
 
-void print_trace_info(const ordered_json& j) {
+void print_trace_info(const Json& j) {
   for (const auto& [name, value] : j.items()) {
     if (name == "columns") continue;
     std::printf("%-20s%s\n", name.c_str(),
@@ -84,7 +81,7 @@ void add_info(CLI::App& trace, int& exit_code) {
   command->add_flag("--allow-gaps", o->limits.allow_gaps, "Accept gaps longer than 0.1 s");
   command->footer("Example: verisim trace info peg.csv");
   command->callback([=, &exit_code] {
-    const ordered_json report = describe(parse_trace(o->file, content_of(o->file), "", o->limits));
+    const Json report = describe(parse_trace(o->file, content_of(o->file), "", o->limits));
     if (o->json)
       std::printf("%s\n", json_text(report).c_str());
     else

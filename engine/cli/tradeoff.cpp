@@ -2,10 +2,10 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
@@ -14,7 +14,6 @@
 #include "engine/cli/tradeoff_sweep.hpp"
 #include "engine/contact/query.hpp"
 #include "engine/record/output_place.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/origin.hpp"
 #include "engine/session/recorded_run.hpp"
 #include "engine/tradeoff/bounds.hpp"
@@ -23,7 +22,6 @@
 namespace verisim::cli {
 namespace {
 
-using nlohmann::ordered_json;
 using tradeoff::Kind;
 using tradeoff::Table;
 
@@ -92,7 +90,7 @@ void print_table(const Table& table) {
   if (table.peers_json.empty()) return;
   if (table.scenario.empty())
     for (const std::string& note : table.notes) std::printf("note: %s\n", shown(note).c_str());
-  std::printf("%s", tradeoff::text_of_peers(ordered_json::parse(table.peers_json)).c_str());
+  std::printf("%s", tradeoff::text_of_peers(parse_json(table.peers_json)).c_str());
 }
 
 bool all_failed(const Table& table) {
@@ -105,10 +103,10 @@ bool has_coverage(const tradeoff::Bounds& bounds) {
   return bounds.budget_us || (bounds.error && bounds.error->kind != Kind::flips);
 }
 
-ordered_json json_of_setting(const Table& table, std::size_t setting, const tradeoff::Bounds& bounds) {
+Json json_of_setting(const Table& table, std::size_t setting, const tradeoff::Bounds& bounds) {
   return {{"row", setting},
           {"parameters", table.rows[setting].parameters},
-          {"coverage", has_coverage(bounds) ? ordered_json(tradeoff::coverage_of(table.repeat)) : ordered_json()}};
+          {"coverage", has_coverage(bounds) ? Json(tradeoff::coverage_of(table.repeat)) : Json()}};
 }
 
 /// 1 and a line on stderr if no setting keeps the bounds, or none has figures.
@@ -117,8 +115,8 @@ int tell(const Table& table, const Question& question, bool as_json) {
   std::optional<std::size_t> setting;
   if (asked) setting = choose(table.rows, question.bounds, question.by);
   if (as_json) {
-    ordered_json all = json_of(table);
-    if (asked) all["setting"] = setting ? json_of_setting(table, *setting, question.bounds) : ordered_json();
+    Json all = json_of(table);
+    if (asked) all["setting"] = setting ? json_of_setting(table, *setting, question.bounds) : Json();
     std::printf("%s\n", json_text(all).c_str());
   } else {
     print_table(table);
@@ -169,7 +167,7 @@ int run_tradeoff(const TradeoffOptions& o) {
   Table table = sweep ? sweep->table(question.by) : table_without_scenario(question.by);
   if (o.peers) {
     const PeersFound found = ask_peers(peers, o.quick, o.sweep.quiet);
-    table.peers_json = found.peers.dump();
+    table.peers_json = json_text(found.peers);
     if (!found.note.empty()) table.notes.push_back(found.note);
   }
   write(places, table);

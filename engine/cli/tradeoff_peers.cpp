@@ -1,4 +1,5 @@
 #include "engine/cli/tradeoff_peers.hpp"
+#include "engine/base/json.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -20,7 +21,6 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 constexpr const char* kName = "verisim-peers";
 
@@ -82,7 +82,7 @@ PeersFound ask_peers(const std::string& program, bool quick, bool quiet) {
   std::vector<std::string> options = {"--json"};
   if (quick) options.emplace_back("--quick");
   if (quiet) options.emplace_back("--quiet");
-  const ordered_json said = ordered_json::parse(said_by(program, options), nullptr, false);
+  const Json said = parse_json_or_discard(said_by(program, options));
   const auto has = [&](const char* key) { return said.is_object() && said.contains(key); };
   if (!has("format") || said["format"] != tradeoff::kPeersFormat || !has("format_version") ||
       said["format_version"] != 1 || !has("peers") || !has("commit") || !said["commit"].is_string())

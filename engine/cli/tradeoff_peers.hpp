@@ -2,8 +2,9 @@
 // methods on the same poses and insertions. It links their libraries, which few have, so it is a program of its own.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "engine/base/json.hpp"
 
 namespace verisim::cli {
 
@@ -11,8 +12,8 @@ namespace verisim::cli {
 [[nodiscard]] std::string peers_program();
 
 struct PeersFound {
-  nlohmann::ordered_json peers;  ///< as engine/tradeoff/peers.hpp says
-  std::string note;              ///< that it was built from another commit; empty: it was not
+  Json peers;        ///< as engine/tradeoff/peers.hpp says
+  std::string note;  ///< that it was built from another commit; empty: it was not
 };
 /// Runs it: minutes, with `quick` one or two. Its progress goes to stderr; it ends with this program.
 /// Error(input): it cannot be started, ends badly, or says something else than a list of engines.

@@ -1,9 +1,9 @@
 #include "engine/cli/tradeoff_sweep.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/base/error.hpp"
@@ -22,7 +22,6 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 using tradeoff::Kind;
 using tradeoff::Table;
 
@@ -108,7 +107,7 @@ Sweep::Sweep(const SweepRequest& request) : request_(request) {
   design.repeat = 1;
   design.seed = request.seed;
   const auto value_of = [&](const std::string& option, const std::string& key, const std::string& text) {
-    return batch::cell_of(ordered_json::parse(parameters.value_of(key, text, option)));
+    return batch::cell_of(parse_json(parameters.value_of(key, text, option)));
   };
   design_ = batch::make_design(design, value_of);
   if (design_.runs() < 2)
@@ -183,7 +182,7 @@ void Sweep::say_where_truth_is_not_finer(const std::map<std::string, batch::Cell
       const auto* const value = std::get_if<double>(&cell);
       return value == nullptr ? 0.0 : *value;  // 0: not a length or time of its own, as spacing = 0 in our scenes
     };
-    const double usual = number(batch::cell_of(ordered_json::parse(declared->value_json)));
+    const double usual = number(batch::cell_of(parse_json(declared->value_json)));
     const auto named = truth.find(dial);
     const double of_truth = named == truth.end() ? usual : number(named->second);
     double finest = usual;
@@ -330,11 +329,11 @@ void Sweep::tell_convergence(const std::vector<StepStudy>& studies, Table& table
   std::size_t touched = 0, converging = 0, failed = 0;
   double error = 0, apart = 0;
   std::string unresolved;
-  ordered_json list = ordered_json::array();
+  Json list = Json::array();
   for (const StepStudy& study : studies) {
     const tradeoff::Convergence& c = study.found;
     const std::size_t number = list.size();
-    ordered_json one = {{"repetition", number}, {"seed", study.seed}, {"contact", study.has_force}};
+    Json one = {{"repetition", number}, {"seed", study.seed}, {"contact", study.has_force}};
     touched += study.has_force ? 1 : 0;
     if (!study.failed.empty()) {
       ++failed;
@@ -346,18 +345,18 @@ void Sweep::tell_convergence(const std::vector<StepStudy>& studies, Table& table
         unresolved += fmt::format("{}{} (order {:.1f})", unresolved.empty() ? "" : ", ", number, c.order);
       one["coarse_N"] = c.coarse;
       one["fine_N"] = c.fine;
-      one["order"] = std::isfinite(c.order) ? ordered_json(c.order) : ordered_json();
+      one["order"] = std::isfinite(c.order) ? Json(c.order) : Json();
       one["converges"] = c.converges;
-      one["error_N"] = c.converges ? ordered_json(c.error) : ordered_json();
+      one["error_N"] = c.converges ? Json(c.error) : Json();
     }
     list.push_back(std::move(one));
   }
-  const ordered_json json = {{"what", "contact force, rms over windows of 10 ms"},
-                             {"ratio", kStepRatio},
-                             {"repetitions", list},
-                             {"converging", converging},
-                             {"error_N", converging > 0 ? ordered_json(error) : ordered_json()}};
-  table.convergence_json = json.dump();
+  const Json json = {{"what", "contact force, rms over windows of 10 ms"},
+                     {"ratio", kStepRatio},
+                     {"repetitions", list},
+                     {"converging", converging},
+                     {"error_N", converging > 0 ? Json(error) : Json()}};
+  table.convergence_json = json_text(json);
   if (touched == 0) {
     table.convergence = "it has no contact: every force is an error";
     return;
@@ -425,8 +424,7 @@ Table Sweep::table(Kind by) {
   table.duration = request_.duration;
   const std::vector<std::string> keys = design_.keys();
   for (const ParameterDeclaration& p : declared_)
-    if (std::find(keys.begin(), keys.end(), p.name) == keys.end())
-      table.fixed[p.name] = ordered_json::parse(p.value_json);
+    if (std::find(keys.begin(), keys.end(), p.name) == keys.end()) table.fixed[p.name] = parse_json(p.value_json);
   table.truth = truth_text();
   table.by = by;
   table.notes = notes_;

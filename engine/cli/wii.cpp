@@ -3,20 +3,17 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/cli/commands.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/wii/coverage.hpp"
 #include "engine/wii/place.hpp"
 
 namespace verisim::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct PlaceCommand {
   std::string trace;
@@ -85,7 +82,7 @@ wii::PlaceOptions place_options(const PlaceCommand& c, bool with_screen) {
 }
 
 /// Eq. 2.1 and 2.2 beside what the virtual remote sees (R7).
-ordered_json coverage_of(const PlaceCommand& c, const wii::TrackerSettings& tracker) {
+Json coverage_of(const PlaceCommand& c, const wii::TrackerSettings& tracker) {
   const double spacing = (tracker.leds.p_H[0] - tracker.leds.p_H[1]).norm();
   const double d1 = c.range[0];
   const double d2 = c.range[1];
@@ -104,13 +101,13 @@ ordered_json coverage_of(const PlaceCommand& c, const wii::TrackerSettings& trac
           {"volume_standard_error_m3", volume.standard_error}};
 }
 
-ordered_json place_json(const wii::Placement& place) {
+Json place_json(const wii::Placement& place) {
   const Vector3d& p = place.X_WR.position;
   return {{"position_m", {p.x(), p.y(), p.z()}},
           {"heading_deg", place.heading / wii::kDegree},
           {"pitch_deg", place.pitch / wii::kDegree},
           {"covered", place.covered},
-          {"expected_error_m", place.covered > 0 ? ordered_json(place.error) : ordered_json()}};
+          {"expected_error_m", place.covered > 0 ? Json(place.error) : Json()}};
 }
 
 /// Heads by why they are not seen from a place: numbers from 0, as in the trace or as modelled.
@@ -142,7 +139,7 @@ void print_places(const wii::PlaceOptions& options, const std::vector<wii::Place
 void run_place(const CLI::App& command, const PlaceCommand& c) {
   refuse_idle_options(command, c);
   const wii::PlaceOptions options = place_options(c, c.trace.empty() || command.count("--screen") > 0);
-  const ordered_json coverage = coverage_of(c, options.tracker);
+  const Json coverage = coverage_of(c, options.tracker);
   std::vector<wii::Placement> places;
   if (c.at.empty()) {
     places = wii::good_places(options);
@@ -153,11 +150,11 @@ void run_place(const CLI::App& command, const PlaceCommand& c) {
     places = {wii::judge_place(options, vector_of(c.at), c.at[3] * wii::kDegree, c.at[4] * wii::kDegree)};
   }
   if (c.json) {
-    ordered_json j = place_json(places.front());
+    Json j = place_json(places.front());
     j["heads"] = options.heads.size();
-    j["lost"] = ordered_json::object();
+    j["lost"] = Json::object();
     for (const auto& [why, heads] : lost_from(options, places.front())) j["lost"][std::string(why)] = heads;
-    j["places"] = ordered_json::array();
+    j["places"] = Json::array();
     for (const wii::Placement& place : places) j["places"].push_back(place_json(place));
     j["coverage"] = coverage;
     std::printf("%s\n", json_text(j).c_str());

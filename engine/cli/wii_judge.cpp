@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/line_program.hpp"
 #include "engine/cli/options.hpp"
@@ -14,7 +14,6 @@
 #include "engine/cli/wii_synth.hpp"
 #include "engine/cli/wii_wire.hpp"
 #include "engine/record/output_place.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/wii/judge.hpp"
 #include "engine/wii/validation_plot.hpp"
 
@@ -100,14 +99,14 @@ std::string alignment_text(const std::string& alignment, const Pose& X_TE) {
 
 void print(const JudgeCommand& c, const wii::Judgement& j, std::size_t samples) {
   if (c.json) {
-    nlohmann::ordered_json out;
-    out["rows"] = nlohmann::ordered_json::array({json_of(j.row)});  // bare braces: g++ and clang++ differ
+    Json out;
+    out["rows"] = Json::array({json_of(j.row)});  // bare braces: g++ and clang++ differ
     const Vector3d& p = j.X_TE.position;
     const auto& q = j.X_TE.rotation.coeffs();
     out["alignment"] = c.alignment;
     out["aligned_by"] = {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]};
     out["time_offset_s"] = j.offset;
-    out["time_offset_better_s"] = j.offset_better ? nlohmann::ordered_json(*j.offset_better) : nullptr;
+    out["time_offset_better_s"] = j.offset_better ? Json(*j.offset_better) : nullptr;
     out["outside"] = j.outside;
     out["unanswered"] = j.unanswered;
     out["samples"] = samples;

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
@@ -14,7 +14,6 @@
 #include "engine/record/output_place.hpp"
 #include "engine/script/wii_recording.hpp"
 #include "engine/session/interrupts.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/stop_watch.hpp"
 #include "engine/vrpn/client.hpp"
 #include "engine/vrpn/payload.hpp"
@@ -189,11 +188,11 @@ int listen(const ListenCommand& c) {
                trace.rows() > 0 ? poses_of(wii_recording_of(c.remote, trace), c.tracker) : poses_of(heard.poses),
                c.out.force);
   if (c.json) {
-    const nlohmann::ordered_json j = {{"reports", heard.reports()},
-                                      {"left_out", heard.count_left_out()},
-                                      {"left_out_because", heard.left_out()},
-                                      {"ended", ended},
-                                      {"interrupted", was_interrupted()}};
+    const Json j = {{"reports", heard.reports()},
+                    {"left_out", heard.count_left_out()},
+                    {"left_out_because", heard.left_out()},
+                    {"ended", ended},
+                    {"interrupted", was_interrupted()}};
     std::printf("%s\n", json_text(j).c_str());
   } else {
     std::printf("took %zu %s; ended: %s\n", heard.reports(), trace.rows() > 0 ? "reports" : "poses", ended.c_str());

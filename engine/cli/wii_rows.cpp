@@ -1,4 +1,5 @@
 #include "engine/cli/wii_rows.hpp"
+#include "engine/base/json.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -11,42 +12,41 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
-ordered_json json_of_figures(const wii::ErrorFigures& f) {
+Json json_of_figures(const wii::ErrorFigures& f) {
   return {
       {"rms", f.rms}, {"p95", f.p95}, {"max", f.max}, {"rms_axis", {f.rms_axis.x(), f.rms_axis.y(), f.rms_axis.z()}}};
 }
 
-ordered_json known(double value) {
-  return std::isnan(value) ? ordered_json(nullptr) : ordered_json(value);
+Json known(double value) {
+  return std::isnan(value) ? Json(nullptr) : Json(value);
 }
 
 }  // namespace
 
-ordered_json json_of(const wii::ValidationRow& r) {
-  ordered_json j = {{"sensor", r.sensor},
-                    {"trajectory", r.trajectory},
-                    {"tracker", r.tracker},
-                    {"reports", r.reports},
-                    {"valid", r.valid},
-                    {"position_m", json_of_figures(r.position)},
-                    {"orientation_deg", json_of_figures(r.orientation)},
-                    {"availability", r.availability},
-                    {"false_validity", r.false_validity},
-                    {"latency_s", r.latency},
-                    {"nees", known(r.nees)},
-                    {"nees_lower", known(r.nees_lower)},
-                    {"nees_upper", known(r.nees_upper)},
-                    {"consistent", r.consistent},
-                    {"within_95", known(r.within_95)},
-                    {"orientation_nees", known(r.orientation_nees)},
-                    {"orientation_nees_lower", known(r.orientation_nees_lower)},
-                    {"orientation_nees_upper", known(r.orientation_nees_upper)},
-                    {"reacquired", r.reacquired},
-                    {"longest_return_s", r.longest_return},
-                    {"update_ns", known(r.update_ns)},
-                    {"seeds", r.seeds}};
+Json json_of(const wii::ValidationRow& r) {
+  Json j = {{"sensor", r.sensor},
+            {"trajectory", r.trajectory},
+            {"tracker", r.tracker},
+            {"reports", r.reports},
+            {"valid", r.valid},
+            {"position_m", json_of_figures(r.position)},
+            {"orientation_deg", json_of_figures(r.orientation)},
+            {"availability", r.availability},
+            {"false_validity", r.false_validity},
+            {"latency_s", r.latency},
+            {"nees", known(r.nees)},
+            {"nees_lower", known(r.nees_lower)},
+            {"nees_upper", known(r.nees_upper)},
+            {"consistent", r.consistent},
+            {"within_95", known(r.within_95)},
+            {"orientation_nees", known(r.orientation_nees)},
+            {"orientation_nees_lower", known(r.orientation_nees_lower)},
+            {"orientation_nees_upper", known(r.orientation_nees_upper)},
+            {"reacquired", r.reacquired},
+            {"longest_return_s", r.longest_return},
+            {"update_ns", known(r.update_ns)},
+            {"seeds", r.seeds}};
   if (r.seeds > 1) {
     j["position_rms_95_m"] = {r.position_rms_95.first, r.position_rms_95.second};
     j["orientation_rms_95_deg"] = {r.orientation_rms_95.first, r.orientation_rms_95.second};

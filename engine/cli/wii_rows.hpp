@@ -1,10 +1,10 @@
 // Rows of validation, whoever was judged: as JSON, and as files.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/base/user_file.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/wii/validate.hpp"
@@ -12,7 +12,7 @@
 namespace verisim::cli {
 
 /// What is not known (NaN) is null.
-[[nodiscard]] nlohmann::ordered_json json_of(const wii::ValidationRow& row);
+[[nodiscard]] Json json_of(const wii::ValidationRow& row);
 
 /// FILE without its ending: plots are named after it.
 [[nodiscard]] std::string stem_of(const OutOptions& out);

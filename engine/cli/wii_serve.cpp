@@ -2,16 +2,15 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/cli/head_server.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wii_set_up.hpp"
 #include "engine/cli/wire_clock.hpp"
 #include "engine/session/interrupts.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/stop_watch.hpp"
 #include "engine/wii/validate.hpp"
 
@@ -119,10 +118,10 @@ int serve(const ServeCommand& c, const CLI::App& command) {
   const Served served = publish_all(head, *source, *tracker, c);
   say_farewell(head, c.quiet);
   if (c.json) {
-    const nlohmann::ordered_json j = {{"port", head.server().address().port},
-                                      {"reports", served.reports},
-                                      {"poses", served.poses},
-                                      {"interrupted", was_interrupted()}};
+    const Json j = {{"port", head.server().address().port},
+                    {"reports", served.reports},
+                    {"poses", served.poses},
+                    {"interrupted", was_interrupted()}};
     std::printf("%s\n", json_text(j).c_str());
   } else if (!c.quiet) {
     std::printf("published %llu reports and %llu poses\n", static_cast<unsigned long long>(served.reports),

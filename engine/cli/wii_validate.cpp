@@ -1,15 +1,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/cli/options.hpp"
 #include "engine/cli/wii_commands.hpp"
 #include "engine/cli/wii_rows.hpp"
 #include "engine/cli/wii_set_up.hpp"
 #include "engine/record/output_place.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/wii/validate.hpp"
 #include "engine/wii/validation_plot.hpp"
 
@@ -17,7 +16,6 @@ namespace verisim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 struct ValidateOptions {
   wii::ValidationOptions validation;
@@ -89,8 +87,8 @@ void run_validate(ValidateOptions& o) {
   const std::vector<wii::ValidationRow> rows = wii::validate(o.validation);
   if (!o.out.path.empty()) write_files(o, rows, inputs);
   if (o.json) {
-    ordered_json j;
-    j["rows"] = ordered_json::array();
+    Json j;
+    j["rows"] = Json::array();
     for (const wii::ValidationRow& r : rows) j["rows"].push_back(json_of(r));
     std::printf("%s\n", json_text(j).c_str());
   } else {

@@ -1,10 +1,10 @@
 #include "engine/compare/batches.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/base/error.hpp"
@@ -14,12 +14,9 @@
 #include "engine/compare/conditions.hpp"
 #include "engine/compare/figure_kinds.hpp"
 #include "engine/compare/index_table.hpp"
-#include "engine/compare/json_input.hpp"
 
 namespace verisim::compare {
 namespace {
-
-using nlohmann::json;
 
 struct BatchFolder {
   std::string path, scenario, sha256;
@@ -27,7 +24,7 @@ struct BatchFolder {
   IndexTable index;
 };
 
-std::string word_in(const json& j, const char* key) {
+std::string word_in(const Json& j, const char* key) {
   return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
 }
 
@@ -35,12 +32,12 @@ BatchFolder open_folder(const std::string& path) {
   const std::string file = path + "/batch.json";
   if (!identity_of(file))
     fail(ErrorKind::input, "{}: has no batch.json; name a folder that `verisim batch` wrote", path);
-  const json j = parse_input(file, UserFile(file, file).content(), "make the batch again");
+  const Json j = parse_json_of(file, UserFile(file, file).content(), "make the batch again");
   if (!j.is_object() || (j.contains("format") && j["format"] != "verisim-batch"))
     fail(ErrorKind::input, "{}: is not what `verisim batch` writes", file);
   if (j.contains("format_version") && j["format_version"] != kBatchFormat)
     fail(ErrorKind::input, "{}: is of format {}, this verisim reads format {}; compare with the verisim that wrote it",
-         file, j["format_version"].dump(), kBatchFormat);
+         file, json_text(j["format_version"]), kBatchFormat);
   const std::string index = path + "/index.csv";
   if (!identity_of(index))
     fail(ErrorKind::input, "{}: has no index.csv: the batch has not ended; call the same `verisim batch` again", path);

@@ -1,21 +1,18 @@
 #include "engine/compare/benchmarks.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
 #include "engine/base/user_file.hpp"
-#include "engine/compare/json_input.hpp"
 
 namespace verisim::compare {
 namespace {
-
-using nlohmann::json;
 
 constexpr const char* kHowToWrite = "write it with --benchmark_out=FILE --benchmark_repetitions=20";
 
@@ -31,23 +28,23 @@ bool has_words_of_no_number(const std::string& text) {
                      [&](const char* word) { return text.find(word) != std::string::npos; });
 }
 
-json parsed(const std::string& path, const std::string& text) {
-  if (has_words_of_no_number(text) && json::parse(text, nullptr, false).is_discarded())
+Json parsed(const std::string& path, const std::string& text) {
+  if (has_words_of_no_number(text) && parse_json_or_discard(text).is_discarded())
     fail(ErrorKind::input, "{}: has a NaN or an infinity, which are no times; measure it again", path);
-  return parse_input(path, text, kHowToWrite);
+  return parse_json_of(path, text, kHowToWrite);
 }
 
-double time_in(const std::string& path, const std::string& name, const json& entry, const char* key) {
+double time_in(const std::string& path, const std::string& name, const Json& entry, const char* key) {
   const double time = entry.contains(key) && entry[key].is_number() ? entry[key].get<double>() : std::nan("");
   if (!(time > 0) || !std::isfinite(time))
     fail(ErrorKind::input, "{}: {}: its {} is no time above 0; measure it again", path, shown(name, 100), key);
   return time;
 }
 
-void read_context(const json& context, BenchmarkFile& to) {
+void read_context(const Json& context, BenchmarkFile& to) {
   static const std::set<std::string> kOfTheMoment = {"date", "load_avg", "executable", "caches", "mhz_per_cpu"};
   for (const auto& [key, value] : context.items()) {
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string text = value.is_string() ? value.get<std::string>() : json_text(value);
     if (key == "commit") to.origin.commit = text;
     if (key != "commit" && kOfTheMoment.count(key) == 0) to.context.emplace_back(key, text);
   }
@@ -64,7 +61,7 @@ bool is_google_own(const std::string& key) {
 }
 
 /// Adds a repetition, or nothing for a mean, median or deviation.
-void read_entry(const std::string& path, const json& entry, BenchmarkFile& to) {
+void read_entry(const std::string& path, const Json& entry, BenchmarkFile& to) {
   if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string())
     fail(ErrorKind::input, "{}: a benchmark has no name; {}", path, kHowToWrite);
   const std::string name = entry.value("run_name", entry["name"].get<std::string>());
@@ -150,14 +147,14 @@ bool looks_like_json(const std::string& path) {
 }
 
 BenchmarkFile read_benchmarks(const std::string& path) {
-  const json j = parsed(path, UserFile(path, path).content());
+  const Json j = parsed(path, UserFile(path, path).content());
   if (!j.is_object() || !j.contains("benchmarks") || !j["benchmarks"].is_array())
     fail(ErrorKind::input, "{}: is JSON, but no list of benchmarks; {}", path, kHowToWrite);
   BenchmarkFile file{.origin = {path, "", ""}, .context = {}, .benchmarks = {}};
   if (j.contains("context") && j["context"].is_object()) read_context(j["context"], file);
   try {
-    for (const json& entry : j["benchmarks"]) read_entry(path, entry, file);
-  } catch (const json::exception&) {  // a name that is a number, and so on
+    for (const Json& entry : j["benchmarks"]) read_entry(path, entry, file);
+  } catch (const Json::exception&) {  // a name that is a number, and so on
     fail(ErrorKind::input, "{}: a benchmark's entry is not as Google Benchmark writes it; {}", path, kHowToWrite);
   }
   if (file.benchmarks.empty())

@@ -1,38 +1,35 @@
 #include "engine/compare/bounds.hpp"
+#include "engine/base/json.hpp"
 
 #include <bit>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
 #include "engine/compare/embedded.hpp"
-#include "engine/compare/json_input.hpp"
 
 namespace verisim::compare {
 namespace {
 
-using nlohmann::json;
-
-double number_of(const std::string& file, const std::string& name, const json& j, const char* key) {
+double number_of(const std::string& file, const std::string& name, const Json& j, const char* key) {
   if (!j.contains(key)) return 0;
   if (!j[key].is_number() || !(j[key].get<double>() >= 0))
     fail(ErrorKind::input, "{}: '{}' of '{}' is not a number of 0 or more", file, key, name);
   return j[key].get<double>();
 }
 
-const json& entry_of(const std::string& file, const json& j, const char* name) {
+const Json& entry_of(const std::string& file, const Json& j, const char* name) {
   if (!j.contains(name) || !j[name].is_object())
     fail(ErrorKind::input, "{}: has no '{}'; bench/baseline/bounds.json shows how it looks", file, name);
   return j[name];
 }
 
-void check_source(const std::string& file, const std::string& name, const json& j) {
+void check_source(const std::string& file, const std::string& name, const Json& j) {
   if (!j.is_object() || !j.contains("source") || !j["source"].is_string() || j["source"].get<std::string>().empty())
     fail(ErrorKind::input, "{}: the bound of '{}' does not say its source", file, name);
 }
 
-double bound_of(const std::string& file, const json& j, const char* name) {
-  const json& entry = entry_of(file, j, name);
+double bound_of(const std::string& file, const Json& j, const char* name) {
+  const Json& entry = entry_of(file, j, name);
   check_source(file, name, entry);
   return number_of(file, name, entry, "bound");
 }
@@ -40,7 +37,7 @@ double bound_of(const std::string& file, const json& j, const char* name) {
 }  // namespace
 
 Bounds read_bounds(const std::string& name, const std::string& text) {
-  const json j = parse_input(name, text, "bench/baseline/bounds.json shows how it looks");
+  const Json j = parse_json_of(name, text, "bench/baseline/bounds.json shows how it looks");
   if (!j.is_object()) fail(ErrorKind::input, "{}: is not a JSON object", name);
   Bounds bounds;
   for (const auto& [figure, entry] : entry_of(name, j, "figures").items()) {

@@ -1,4 +1,5 @@
 #include "engine/compare/history.hpp"
+#include "engine/base/json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -141,16 +142,16 @@ std::string table_of(const History& history) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const History& history) {
-  nlohmann::ordered_json j = {{"history", nlohmann::ordered_json::array()}};
+Json json_of(const History& history) {
+  Json j = {{"history", Json::array()}};
   for (const std::string& figure : history.figures) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    Json rows = Json::array();
     for_each_value(history, figure, [&](const HistoryEntry& entry, double value, std::optional<double> change) {
       rows.push_back({{"file", entry.file},
                       {"version", entry.origin.version},
                       {"commit", entry.origin.commit},
                       {"value", value},
-                      {"change", change ? nlohmann::ordered_json(*change) : nlohmann::ordered_json()}});
+                      {"change", change ? Json(*change) : Json()}});
     });
     j["history"].push_back({{"figure", figure}, {"rows", rows}});
   }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/compare/comparison.hpp"
 
 namespace verisim::compare {
@@ -28,6 +28,6 @@ struct History {
 
 /// A table for each figure, with a line for each file and how far it is from the one before.
 [[nodiscard]] std::string table_of(const History& history);
-[[nodiscard]] nlohmann::ordered_json json_of(const History& history);
+[[nodiscard]] Json json_of(const History& history);
 
 }  // namespace verisim::compare

@@ -1,4 +1,5 @@
 #include "engine/compare/report.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +12,6 @@
 namespace verisim::compare {
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string text_of(const Value& value) {
   return std::visit(
       Overloaded{[](std::monostate) { return std::string("-"); }, [](std::uint64_t n) { return std::to_string(n); },
@@ -21,10 +20,9 @@ std::string text_of(const Value& value) {
       value);
 }
 
-ordered_json json_value(const Value& value) {
-  return std::visit(
-      Overloaded{[](std::monostate) { return ordered_json(); }, [](const auto& known) { return ordered_json(known); }},
-      value);
+Json json_value(const Value& value) {
+  return std::visit(Overloaded{[](std::monostate) { return Json(); }, [](const auto& known) { return Json(known); }},
+                    value);
 }
 
 const char* word_of(Change change) {
@@ -117,16 +115,16 @@ std::string line_of(const char* letter, const Origin& origin) {
   return fmt::format("{}: {}{}\n", letter, shown(origin.path), from.empty() ? "" : " (" + shown(from) + ")");
 }
 
-ordered_json json_of_origin(const Origin& origin) {
+Json json_of_origin(const Origin& origin) {
   return {{"path", origin.path}, {"version", origin.version}, {"commit", origin.commit}};
 }
 
 template <typename T>
-ordered_json json_or_null(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json();
+Json json_or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
 }
 
-ordered_json json_of_time(const TimeFigure& f) {
+Json json_of_time(const TimeFigure& f) {
   return {{"name", f.name},
           {"ratio", f.ratio},
           {"low", json_or_null(f.low)},
@@ -159,11 +157,10 @@ std::string table_of(const Comparison& c) {
   return text + "\n";
 }
 
-ordered_json json_of(const Comparison& c) {
-  ordered_json j = {
-      {"verdict", name_of(verdict_of(c))}, {"why", reasons_of(c)},     {"kind", c.kind},
-      {"a", json_of_origin(c.a)},          {"b", json_of_origin(c.b)}, {"counts_compared", c.counts_compared}};
-  for (const char* list : {"counts", "accuracy", "outcomes", "times"}) j[list] = ordered_json::array();
+Json json_of(const Comparison& c) {
+  Json j = {{"verdict", name_of(verdict_of(c))}, {"why", reasons_of(c)},     {"kind", c.kind},
+            {"a", json_of_origin(c.a)},          {"b", json_of_origin(c.b)}, {"counts_compared", c.counts_compared}};
+  for (const char* list : {"counts", "accuracy", "outcomes", "times"}) j[list] = Json::array();
   for (const CountDifference& d : c.counts)
     j["counts"].push_back({{"name", d.name},
                            {"a", json_value(d.a)},
@@ -186,7 +183,7 @@ ordered_json json_of(const Comparison& c) {
   for (const TimeFigure& f : c.times) j["times"].push_back(json_of_time(f));
   j["only_a"] = c.only_a;
   j["only_b"] = c.only_b;
-  j["first_difference"] = c.first_difference.empty() ? ordered_json() : ordered_json(c.first_difference);
+  j["first_difference"] = c.first_difference.empty() ? Json() : Json(c.first_difference);
   j["notes"] = c.notices;
   return j;
 }

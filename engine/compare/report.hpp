@@ -1,9 +1,9 @@
 // A comparison as people read it and as programs do.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "engine/base/json.hpp"
 #include "engine/compare/comparison.hpp"
 
 namespace verisim::compare {
@@ -12,6 +12,6 @@ namespace verisim::compare {
 [[nodiscard]] std::string table_of(const Comparison& comparison);
 
 /// What INTERFACES section 5 promises of `--json`, and what else the tables have.
-[[nodiscard]] nlohmann::ordered_json json_of(const Comparison& comparison);
+[[nodiscard]] Json json_of(const Comparison& comparison);
 
 }  // namespace verisim::compare

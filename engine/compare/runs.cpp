@@ -1,8 +1,8 @@
 #include "engine/compare/runs.hpp"
+#include "engine/base/json.hpp"
 
 #include <bit>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/base/error.hpp"
@@ -15,7 +15,6 @@
 namespace verisim::compare {
 namespace {
 
-using nlohmann::json;
 using Attributes = std::map<std::string, Attribute>;
 
 std::string text_of(const Attributes& attributes, const std::string& name) {
@@ -58,13 +57,13 @@ void compare_counts_by_name(const std::map<std::string, std::uint64_t>& a,
   for (const std::string& name : names) compare_count(name, count_in(a, name), count_in(b, name), to);
 }
 
-json summary_json(const RunFile& file) {
-  json j = json::parse(text_of(file.summary(), "json"), nullptr, false);
-  return j.is_object() ? j : json::object();
+Json summary_json(const RunFile& file) {
+  Json j = parse_json_or_discard(text_of(file.summary(), "json"));
+  return j.is_object() ? j : Json::object();
 }
 
 /// How many frames each kind of constraint acted in.
-std::map<std::string, std::uint64_t> constraints_of(const json& summary) {
+std::map<std::string, std::uint64_t> constraints_of(const Json& summary) {
   std::map<std::string, std::uint64_t> frames;
   if (summary.contains("constraints") && summary["constraints"].is_object())
     for (const auto& [name, count] : summary["constraints"].items())
@@ -72,7 +71,7 @@ std::map<std::string, std::uint64_t> constraints_of(const json& summary) {
   return frames;
 }
 
-std::map<std::string, double> measures_of(const json& summary) {
+std::map<std::string, double> measures_of(const Json& summary) {
   std::map<std::string, double> values;
   if (summary.contains("measures") && summary["measures"].is_object())
     for (const auto& [name, measure] : summary["measures"].items())
@@ -81,14 +80,14 @@ std::map<std::string, double> measures_of(const json& summary) {
   return values;
 }
 
-Value value_of(const json& j) {
+Value value_of(const Json& j) {
   if (j.is_number_unsigned()) return j.get<std::uint64_t>();
   if (j.is_number()) return j.get<double>();
   if (j.is_string()) return j.get<std::string>();
   return {};
 }
 
-void compare_counts(const RunFile& a, const RunFile& b, const json& of_a, const json& of_b, Comparison& to) {
+void compare_counts(const RunFile& a, const RunFile& b, const Json& of_a, const Json& of_b, Comparison& to) {
   compare_counts_by_name(work_counts(a), work_counts(b), to);
   for (const RunFigure& figure : run_figures()) {
     const std::string name = figure.name;
@@ -103,7 +102,7 @@ AccuracyFigure same_word(const std::string& name, const std::string& a, const st
   return {.name = name, .a = a, .b = b, .bound = 0.0, .change = a == b ? Change::none : change, .note = ""};
 }
 
-void compare_accuracy(const json& of_a, const json& of_b, const Bounds& bounds, Comparison& to) {
+void compare_accuracy(const Json& of_a, const Json& of_b, const Bounds& bounds, Comparison& to) {
   for (const RunFigure& figure : run_figures()) {
     const std::string name = figure.name;
     if (kind_of_figure(name) != FigureKind::number) continue;
@@ -120,7 +119,7 @@ void compare_accuracy(const json& of_a, const json& of_b, const Bounds& bounds, 
   }
   for (const auto& [name, value] : measures_b)
     if (measures_a.count(name) == 0) to.only_b.push_back("measure '" + name + "'");
-  const auto word = [](const json& j, const char* name) {
+  const auto word = [](const Json& j, const char* name) {
     return j.contains(name) && j[name].is_string() ? j[name].get<std::string>() : std::string();
   };
   const std::string source = "penetration_source";
@@ -155,15 +154,16 @@ void show_times(const std::map<std::string, double>& a, const std::map<std::stri
 
 void note_what_differs(const RunFile& a, const RunFile& b, Comparison& to) {
   const Attributes &of_a = a.header().attributes, &of_b = b.header().attributes;
-  const json p = json::parse(text_of(of_a, "parameters"), nullptr, false);
-  const json q = json::parse(text_of(of_b, "parameters"), nullptr, false);
+  const Json p = parse_json_or_discard(text_of(of_a, "parameters"));
+  const Json q = parse_json_or_discard(text_of(of_b, "parameters"));
   std::set<std::string> keys;
-  for (const json* parameters : {&p, &q})
+  for (const Json* parameters : {&p, &q})
     if (parameters->is_object())
       for (const auto& [key, value] : parameters->items()) keys.insert(key);
   for (const std::string& key : keys) {
-    const json x = p.is_object() ? p.value(key, json()) : json(), y = q.is_object() ? q.value(key, json()) : json();
-    if (x != y) to.notices.push_back(shown(fmt::format("parameter {} is {} in A, {} in B", key, x.dump(), y.dump())));
+    const Json x = p.is_object() ? p.value(key, Json()) : Json(), y = q.is_object() ? q.value(key, Json()) : Json();
+    if (x != y)
+      to.notices.push_back(shown(fmt::format("parameter {} is {} in A, {} in B", key, json_text(x), json_text(y))));
   }
   const auto is_other = [&](const char* name) {
     const auto x = of_a.find(name), y = of_b.find(name);
@@ -198,7 +198,7 @@ std::map<std::string, std::uint64_t> work_counts(const RunFile& file) {
 
 std::map<std::string, double> numbers_of(const RunFile& file) {
   std::map<std::string, double> numbers;
-  const json summary = summary_json(file);
+  const Json summary = summary_json(file);
   for (const auto& [name, value] : summary.items()) {
     if (value.is_number()) numbers[name] = value.get<double>();
     if (value.is_object() && name.ends_with("_ns"))
@@ -222,7 +222,7 @@ Comparison compare_runs(const std::string& path_a, const std::string& path_b, co
          shown(scenario_a), path_b, shown(scenario_b));
   Comparison c{.kind = "runs", .a = origin_of(a, path_a), .b = origin_of(b, path_b)};
   note_what_differs(a, b, c);
-  const json of_a = summary_json(a), of_b = summary_json(b);
+  const Json of_a = summary_json(a), of_b = summary_json(b);
   compare_counts(a, b, of_a, of_b, c);
   compare_accuracy(of_a, of_b, bounds, c);
   c.accuracy.push_back(same_word("state_hash", text_of(a.header().attributes, "state_hash"),

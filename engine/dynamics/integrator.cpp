@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/cholesky.hpp"
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/dynamics/free_rotation.hpp"
@@ -227,7 +228,7 @@ void assemble(const RigidBody& body, const Loads& loads, double dt, Contacts con
     step.A += dt * loads.contact_damping + dt * dt * loads.contact_stiffness;
     step.b += dt * (stacked(loads.contact) + dt * loads.contact_drift + loads.contact_damping * u0);
   }
-  step.free = solved(step.A, step.b);
+  step.free = Cholesky6(step.A).solve(step.b);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/cholesky.hpp"
 #include "engine/exact/convex_step.hpp"
 
 namespace verisim::exact {
@@ -224,7 +225,7 @@ void ConvexStep::move_rows(double dt) {
       if (row.force == 0) continue;
       Vector6d pushed = Vector6d::Zero();
       pushed.tail<3>() = dt * row.force * row.turn[side];
-      body.u0 -= solved(body.M, pushed);
+      body.u0 -= Cholesky6(body.M).solve(pushed);
     }
   }
   for (Body& body : bodies_) body.p_WC += dt * body.during.head<3>();  // the two sides of a row differ by that

@@ -20,8 +20,8 @@ using DividerSet = std::array<std::uint32_t, 3>;
                                    std::size_t n) {
   Vector3d y = x;
   for (int step = 0; step < 8; ++step) {
-    Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> J(static_cast<Eigen::Index>(n), 3);
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> g(static_cast<Eigen::Index>(n));
+    Matrix3d J = Matrix3d::Zero();
+    Vector3d g = Vector3d::Zero();
     for (std::size_t k = 0; k < n; ++k) {
       const Local local = local_at(dividers[set[k]], y);
       J.row(static_cast<Eigen::Index>(k)) = local.gradient.transpose();
@@ -32,10 +32,10 @@ using DividerSet = std::array<std::uint32_t, 3>;
       y -= g(0) * J.row(0).transpose();
       continue;
     }
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> JJ = J * J.transpose();
+    Matrix3d JJ = J * J.transpose();
+    if (n == 2) JJ(2, 2) = 1;                                                      // no third
     if (std::abs(JJ.determinant()) < 1e-12) return Vector3d::Constant(kInfinity);  // surfaces that never cross here
-    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> lambda = JJ.inverse() * g;
-    y -= J.transpose() * lambda;
+    y -= J.transpose() * (JJ.inverse() * g);
   }
   return y;
 }

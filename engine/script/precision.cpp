@@ -1,9 +1,9 @@
 #include "engine/script/precision.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
 #include "engine/base/text.hpp"
@@ -12,17 +12,16 @@
 namespace verisim::script {
 namespace {
 
-using nlohmann::ordered_json;
 using tradeoff::Bounds;
 using tradeoff::Row;
 using tradeoff::Table;
 
 /// As --set takes it; true and false are texts in a table.
-std::string set_text(const ordered_json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+std::string set_text(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : json_text(value);
 }
 
-bool is_same(const ordered_json& a, const ordered_json& b) {
+bool is_same(const Json& a, const Json& b) {
   if (a.is_number() && b.is_number()) return a.get<double>() == b.get<double>();
   return set_text(a) == set_text(b);
 }
@@ -45,13 +44,13 @@ bool is_set(const PrecisionRequest& request, const std::string& dial) {
 }
 
 /// Whether a row has what the command line says of its dials.
-bool agrees(const Row& row, const ordered_json& parameters, const PrecisionRequest& request) {
+bool agrees(const Row& row, const Json& parameters, const PrecisionRequest& request) {
   for (const auto& [dial, value] : row.parameters)
     if (is_set(request, dial) && parameters.contains(dial) && !is_same(parameters.at(dial), value)) return false;
   return true;
 }
 
-void check_dials(const Table& table, const ordered_json& parameters, const PrecisionRequest& request) {
+void check_dials(const Table& table, const Json& parameters, const PrecisionRequest& request) {
   if (table.scenario != request.scenario)
     fail(ErrorKind::input, "{} is a table of {}, not of {}; make one with 'verisim tradeoff {} --vary … -o .'",
          request.table, shown(table.scenario, 60), request.scenario, request.scenario);
@@ -67,7 +66,7 @@ std::string seconds_text(const std::optional<double>& duration) {
 }
 
 /// In what this run is another trial than the table's: "depth is 0.021 here and 0.02 there"; empty: in nothing.
-std::string other_trial(const Table& table, const ordered_json& parameters, const PrecisionRequest& request) {
+std::string other_trial(const Table& table, const Json& parameters, const PrecisionRequest& request) {
   std::string other;
   const auto add = [&](const std::string& text) { other += (other.empty() ? "" : ", ") + text; };
   for (const auto& [name, value] : table.fixed)
@@ -111,7 +110,7 @@ PrecisionChoice choose_precision(const PrecisionRequest& request, const std::str
   tradeoff::Kind by = tradeoff::Kind::force;
   const Bounds bounds = bounds_of(request, by);
   Table table = tradeoff::table_from(request.table, table_text);
-  const ordered_json parameters = ordered_json::parse(request.parameters_json);
+  const Json parameters = parse_json(request.parameters_json);
   check_dials(table, parameters, request);
   for (Row& row : table.rows)
     if (!agrees(row, parameters, request)) row.failed = "the command line says otherwise";

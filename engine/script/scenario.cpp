@@ -1,6 +1,5 @@
 #include "engine/script/scenario.hpp"
-
-#include <nlohmann/json.hpp>
+#include "engine/base/json.hpp"
 
 #include "engine/script/script_state.hpp"
 
@@ -58,13 +57,11 @@ std::string Scenario::parameters_json() const {
   return implementation_->state.parameters_json;
 }
 std::string Scenario::parameters_in_effect_json() const {
-  using nlohmann::ordered_json;
   const script::ScriptState& state = implementation_->state;
   VERISIM_ASSERT(state.simulation != nullptr);
-  ordered_json json = ordered_json::parse(state.parameters_json);
+  Json json = parse_json(state.parameters_json);
   // A parameter is the dial of its name only if the script gave the engine its value.
-  const auto overrule = [&](const char* name, const ordered_json& asked, const ordered_json& acts,
-                            const ordered_json& told) {
+  const auto overrule = [&](const char* name, const Json& asked, const Json& acts, const Json& told) {
     if (json.contains(name) && json[name] == asked && asked != acts) json[name] = told;
   };
   if (state.asked_duration && state.options.duration)
@@ -72,7 +69,7 @@ std::string Scenario::parameters_in_effect_json() const {
   if (state.asked_seed && state.options.seed) overrule("seed", *state.asked_seed, *state.options.seed, nullptr);
   if (state.simulation->is_implicit() && state.scene.parameters.integrator != Integrator::implicit)
     overrule("integrator", "semi-implicit", "implicit", "implicit");
-  return json.dump();
+  return json_text(json);
 }
 const std::string& Scenario::outcome() const {
   return implementation_->state.outcome;

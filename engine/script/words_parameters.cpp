@@ -2,8 +2,8 @@
 // the small words: mm, deg, outcome, measure.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "engine/base/json.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/base/text.hpp"
 #include "engine/script/script_state.hpp"
@@ -39,7 +39,7 @@ bool is_declared_parameter(lua_State* L, int index) {
   return same;
 }
 
-nlohmann::json to_json(lua_State* L, ParameterRoom& room, int index, const std::string& what, int depth = 0) {
+Json to_json(lua_State* L, ParameterRoom& room, int index, const std::string& what, int depth = 0) {
   room.take(L, 32);
   switch (lua_type(L, index)) {
     case LUA_TBOOLEAN:
@@ -60,7 +60,7 @@ nlohmann::json to_json(lua_State* L, ParameterRoom& room, int index, const std::
   }
   if (is_declared_parameter(L, index)) raise(L, "{}: parameter(…) is a whole default, not part of one", what);
   if (depth == kNestingMax) raise(L, "{} is nested more than {} deep", what, kNestingMax);
-  nlohmann::json list = nlohmann::json::array();
+  Json list = Json::array();
   const auto length = static_cast<int>(lua_objlen(L, index));
   for (int i = 1; i <= length; ++i) {
     lua_rawgeti(L, index, i);
@@ -199,18 +199,18 @@ int declare_parameters(lua_State* L) {
     lua_pop(L, 1);
   }
   ParameterRoom room;
-  nlohmann::json json = nlohmann::json::object();
+  Json json = Json::object();
   for (ParameterDeclaration& declared : state.parameters) {
     const std::string& name = declared.name;
     lua_getfield(L, 2, name.c_str());
     json[name] = to_json(L, room, lua_gettop(L), "params: " + name);
     declared.type = lua_typename(L, lua_type(L, -1));
-    declared.value_json = json[name].dump();
+    declared.value_json = json_text(json[name]);
     lua_pushvalue(L, -1);
     lua_setfield(L, 1, name.c_str());
     lua_pop(L, 1);
   }
-  state.parameters_json = json.dump();
+  state.parameters_json = json_text(json);
   state.parameters_known = true;
   if (state.parameters_only) raise_for_command_line(L, "the parameters are known: the script ends here");
   lua_settop(L, 1);
@@ -229,7 +229,7 @@ int set_value_as_json(lua_State* L) {
     if (declared->type == lua_typename(L, known)) type = known;
   push_checked_value(L, state, key, text, type);
   ParameterRoom room;
-  push_text(L, to_json(L, room, lua_gettop(L), fmt::format("{} {}", state.set_option, key)).dump());
+  push_text(L, json_text(to_json(L, room, lua_gettop(L), fmt::format("{} {}", state.set_option, key))));
   return 1;
 }
 

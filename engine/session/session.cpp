@@ -3,22 +3,19 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/base/user_file.hpp"
-#include "engine/session/json_text.hpp"
 #include "engine/session/memory_use.hpp"
 #include "engine/session/origin.hpp"
 #include "engine/session/stop_watch.hpp"
 #include "engine/session/warnings.hpp"
 
 namespace verisim {
-
-using nlohmann::json;
 
 namespace {
 
@@ -106,7 +103,7 @@ std::vector<std::string> named_paths(const ScenarioOptions& options) {
 }
 
 std::string invocation_json(const ScenarioOptions& options) {
-  json j;
+  Json j;
   j["path"] = options.path;
   j["set"] = options.sets;
   j["bind"] = options.binds;
@@ -120,7 +117,7 @@ ScenarioOptions options_from_header(const RunHeader& header) {
   if (found == header.attributes.end() || !std::holds_alternative<std::string>(found->second))
     fail(ErrorKind::input, "the run file does not say how it was made (attribute 'invocation'); it cannot be replayed");
   try {
-    const json j = json::parse(std::get<std::string>(found->second));
+    const Json j = parse_json(std::get<std::string>(found->second));
     ScenarioOptions options;
     options.path = j.at("path");
     options.sets = j.at("set");
@@ -128,7 +125,7 @@ ScenarioOptions options_from_header(const RunHeader& header) {
     if (j.contains("seed")) options.seed = j["seed"].get<std::uint64_t>();
     if (j.contains("duration")) options.duration = j["duration"].get<double>();
     return options;
-  } catch (const json::exception&) {
+  } catch (const Json::exception&) {
     fail(ErrorKind::input, "the run file's attribute 'invocation' is damaged; it cannot be replayed");
   }
 }

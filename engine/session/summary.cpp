@@ -2,28 +2,25 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.hpp"
 #include "engine/base/hash.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/quantile.hpp"
-#include "engine/session/json_text.hpp"
 
 namespace verisim {
 namespace {
-
-using nlohmann::ordered_json;
 
 RunFigures::Times times_of(std::vector<std::uint32_t>& ns) {
   if (ns.empty()) return {};
   return {quantile(ns, 0.5), quantile(ns, 0.99), quantile(ns, 1)};
 }
 
-ordered_json json_of_figure(const RunFigure::Value& value) {
+Json json_of_figure(const RunFigure::Value& value) {
   if (const auto* times = std::get_if<RunFigures::Times>(&value))
     return {{"p50", times->p50}, {"p99", times->p99}, {"max", times->max}};
   return std::visit(
-      [](const auto& v) -> ordered_json {
+      [](const auto& v) -> Json {
         if constexpr (std::is_same_v<std::decay_t<decltype(v)>, RunFigures::Times>)
           return {};
         else
@@ -124,11 +121,11 @@ std::string fallback_warning(const RunFigures& run) {
 }
 
 std::string to_json(const RunFigures& run) {
-  ordered_json j;
+  Json j;
   for (const RunFigure& figure : run_figures()) j[figure.name] = json_of_figure(figure.value(run));
-  j["constraints"] = ordered_json::object();
+  j["constraints"] = Json::object();
   for (const auto& [name, frames] : run.constraints) j["constraints"][name] = frames;
-  j["pairs"] = ordered_json::array();
+  j["pairs"] = Json::array();
   for (const PairFigures& pair : run.pairs)
     j["pairs"].push_back({{"first", pair.first},
                           {"second", pair.second},
@@ -137,7 +134,7 @@ std::string to_json(const RunFigures& run) {
                           {"by_voxels", pair.by_voxels},
                           {"fraction", pair.fraction()},
                           {"why", pair.why}});
-  j["measures"] = ordered_json::object();
+  j["measures"] = Json::object();
   for (const Measure& m : run.measures) j["measures"][m.name] = {{"value", m.value}, {"unit", m.unit}};
   return json_text(j);
 }

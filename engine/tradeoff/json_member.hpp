@@ -5,10 +5,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "engine/base/json.hpp"
 
 namespace verisim::tradeoff {
 
@@ -20,9 +21,9 @@ class JsonFault : public std::runtime_error {
 /// A member of a JSON text. Everything throws JsonFault for what is not there or of another kind.
 class JsonMember {
  public:
-  JsonMember(const nlohmann::ordered_json& json, std::string place) : json_(&json), place_(std::move(place)) {}
+  JsonMember(const Json& json, std::string place) : json_(&json), place_(std::move(place)) {}
 
-  [[nodiscard]] const nlohmann::ordered_json& json() const { return *json_; }
+  [[nodiscard]] const Json& json() const { return *json_; }
   [[nodiscard]] bool has(const char* name) const { return json_->is_object() && json_->contains(name); }
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
   [[nodiscard]] JsonMember at(const std::string& name) const {
@@ -63,7 +64,7 @@ class JsonMember {
  private:
   [[nodiscard]] std::string below(const std::string& name) const { return place_.empty() ? name : place_ + "." + name; }
 
-  const nlohmann::ordered_json* json_;
+  const Json* json_;
   std::string place_;
 };
 

@@ -1,4 +1,5 @@
 #include "engine/tradeoff/peers.hpp"
+#include "engine/base/json.hpp"
 
 #include <fmt/format.h>
 
@@ -11,26 +12,24 @@
 namespace verisim::tradeoff {
 namespace {
 
-using nlohmann::ordered_json;
-
 /// Empty for null: there is no such figure.
-std::string scaled(const ordered_json& figure, double factor) {
+std::string scaled(const Json& figure, double factor) {
   return figure.is_null() ? std::string() : fmt::format("{:.3g}", factor * figure.get<double>());
 }
 
-std::string named(const ordered_json& row) {
+std::string named(const Json& row) {
   return shown(row.at("name").get<std::string>() + " " + row.at("version").get<std::string>(), 60);
 }
 
 /// Its time with the interval in front.
-std::vector<std::string> begun(const ordered_json& row, const ordered_json& time) {
+std::vector<std::string> begun(const Json& row, const Json& time) {
   return {named(row), scaled(time.at("median"), 1), scaled(time.at("low"), 1), scaled(time.at("high"), 1)};
 }
 
 /// Of all settings that were tried.
-double least_error95(const ordered_json& row) {
+double least_error95(const Json& row) {
   double least = row.at("poses").at("depth_error_m").at("p95").get<double>();
-  for (const ordered_json& tried : row.at("searched").at("poses")) {
+  for (const Json& tried : row.at("searched").at("poses")) {
     const bool errs_as_often =
         tried.at("missed").get<double>() + tried.at("imagined").get<double>() <=
         row.at("poses").at("missed").get<double>() + row.at("poses").at("imagined").get<double>();
@@ -39,14 +38,14 @@ double least_error95(const ordered_json& row) {
   return least;
 }
 
-std::string table_of_queries(const ordered_json& peers) {
+std::string table_of_queries(const Json& peers) {
   TextTable table({"engine", "query, us", "from", "to", "99 %", "depth off, um", "95 %", "least of all", "gaps told, %",
                    "off, um, 95 %", "missed, %", "imagined, %", "best of", "setting"});
-  for (const ordered_json& row : peers) {
+  for (const Json& row : peers) {
     if (row.contains("missing") || row.at("poses").is_null()) continue;
-    const ordered_json& p = row.at("poses");
+    const Json& p = row.at("poses");
     std::vector<std::string> cells = begun(row, p.at("query_us"));
-    const ordered_json& gap = p.at("gap_error_m");
+    const Json& gap = p.at("gap_error_m");
     cells.insert(
         cells.end(),
         {scaled(p.at("query_us_p99"), 1), scaled(p.at("depth_error_m").at("p50"), 1e6),
@@ -58,12 +57,12 @@ std::string table_of_queries(const ordered_json& peers) {
   return table.text();
 }
 
-std::string table_of_insertions(const ordered_json& peers) {
+std::string table_of_insertions(const Json& peers) {
   TextTable table({"engine", "step, us", "from", "to", "passed", "deepest, um", "of clearance", "force off, N",
                    "best of", "setting"});
-  for (const ordered_json& row : peers) {
+  for (const Json& row : peers) {
     if (row.contains("missing")) continue;
-    const ordered_json& i = row.at("insertion");
+    const Json& i = row.at("insertion");
     std::vector<std::string> cells = begun(row, i.at("step_us"));
     cells.insert(
         cells.end(),
@@ -77,11 +76,11 @@ std::string table_of_insertions(const ordered_json& peers) {
 
 }  // namespace
 
-std::string text_of_peers(const ordered_json& peers) {
+std::string text_of_peers(const Json& peers) {
   try {
     std::size_t poses = 0, found = 0, pushed = 0;
     std::string missing;
-    for (const ordered_json& row : peers) {
+    for (const Json& row : peers) {
       if (row.contains("missing")) {
         missing += fmt::format("{}: not there when verisim-peers was built; apt install {}, then build it again\n",
                                shown(row.at("name").get<std::string>()), shown(row.at("missing").get<std::string>()));
@@ -103,7 +102,7 @@ std::string text_of_peers(const ordered_json& peers) {
         "other\n"
         "alone. Force is that of the last 0.1 s, at rest, where it has a closed form.\n",
         poses, found, table_of_queries(peers), pushed, table_of_insertions(peers), missing);
-  } catch (const ordered_json::exception&) {  // a figure is missing or of another kind: it is not this version's
+  } catch (const Json::exception&) {  // a figure is missing or of another kind: it is not this version's
     fail(ErrorKind::input,
          "what verisim-peers said is no list of engines with the figures that this program reads; build it again: "
          "ninja -C build verisim-peers");

@@ -11,14 +11,15 @@
 // Truths are closed forms of poses (bench/peers/insertion.hpp). SI units, times in us.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "engine/base/json.hpp"
 
 namespace verisim::tradeoff {
 
 inline constexpr const char* kPeersFormat = "verisim-peers";
 
 /// For people: a table of queries, one of insertions, what was searched, what is missing. Error(input): no such list.
-[[nodiscard]] std::string text_of_peers(const nlohmann::ordered_json& peers);
+[[nodiscard]] std::string text_of_peers(const Json& peers);
 
 }  // namespace verisim::tradeoff

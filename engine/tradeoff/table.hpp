@@ -4,12 +4,12 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/base/json.hpp"
 #include "engine/tradeoff/errors.hpp"
 
 namespace verisim::tradeoff {
@@ -46,10 +46,10 @@ struct TrialFigures {
 
 /// One setting.
 struct Row {
-  std::map<std::string, nlohmann::ordered_json> parameters;  ///< the dials alone
-  std::string failed;                                        ///< why there are no figures; empty: there are
-  Interval time_us;   ///< frame with contact (without any: every frame), median of each repetition
-  Interval frame_us;  ///< every frame, likewise
+  std::map<std::string, Json> parameters;  ///< the dials alone
+  std::string failed;                      ///< why there are no figures; empty: there are
+  Interval time_us;                        ///< frame with contact (without any: every frame), median of each repetition
+  Interval frame_us;                       ///< every frame, likewise
   std::vector<std::pair<std::string, std::uint64_t>> cost;  ///< counter of /cost to its total over all repetitions
   std::uint64_t frames = 0;                                 ///< of all repetitions
   double step_s = 0;                                        ///< the time step
@@ -67,11 +67,11 @@ struct Table {
   std::string scenario, scenario_sha256, version, commit, cpu, compiler;
   std::uint64_t seed = 1, repeat = 1;
   std::optional<double> duration;
-  std::map<std::string, nlohmann::ordered_json> fixed;  ///< the scenario's other parameters
-  std::string truth;                                    ///< the reference setting in words
-  std::string convergence;                              ///< what is known of the truth's own error, in words
-  std::string convergence_json = "null";                ///< the same as JSON
-  Kind by = Kind::force;                                ///< the error of the front
+  std::map<std::string, Json> fixed;      ///< the scenario's other parameters
+  std::string truth;                      ///< the reference setting in words
+  std::string convergence;                ///< what is known of the truth's own error, in words
+  std::string convergence_json = "null";  ///< the same as JSON
+  Kind by = Kind::force;                  ///< the error of the front
   std::vector<std::string> notes;
   std::vector<Row> rows;
   std::string peers_json;  ///< what other engines did (peers.hpp); empty: they were not asked; not read back
@@ -88,14 +88,14 @@ void find_dominated(std::vector<Row>& rows, Kind by);
 [[nodiscard]] double counted_work_us(const std::vector<std::pair<std::string, std::uint64_t>>& cost,
                                      std::uint64_t frames);
 
-[[nodiscard]] nlohmann::ordered_json json_of(const Table& table);
+[[nodiscard]] Json json_of(const Table& table);
 /// Error(input) that begins with `name`: no table, or a damaged one.
 [[nodiscard]] Table table_from(const std::string& name, const std::string& text);
 [[nodiscard]] std::string csv_of(const Table& table);
 /// For people: settings by their numbers, times, errors, who dominates whom.
 [[nodiscard]] std::string text_of(const Table& table);
 /// "voxelsize=0.0045, hybrid=exact".
-[[nodiscard]] std::string text_of(const std::map<std::string, nlohmann::ordered_json>& parameters);
+[[nodiscard]] std::string text_of(const std::map<std::string, Json>& parameters);
 /// Error over load, logarithmic, the front as a line; SVG.
 [[nodiscard]] std::string plot_of(const Table& table);
 

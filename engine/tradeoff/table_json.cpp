@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/text.hpp"
 #include "engine/tradeoff/json_member.hpp"
 #include "engine/tradeoff/table.hpp"
@@ -11,11 +12,9 @@
 namespace verisim::tradeoff {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr const char* kFormat = "verisim-tradeoff";
 
-ordered_json json_of(const Interval& interval) {
+Json json_of(const Interval& interval) {
   return {{"median", interval.median}, {"low", interval.low}, {"high", interval.high}, {"most", interval.most}};
 }
 
@@ -24,49 +23,48 @@ Interval interval_from(const JsonMember& json) {
           json.at("most").number_from_0()};
 }
 
-ordered_json json_of(const std::map<std::string, ordered_json>& parameters) {
-  ordered_json json = ordered_json::object();
+Json json_of(const std::map<std::string, Json>& parameters) {
+  Json json = Json::object();
   for (const auto& [name, value] : parameters) json[name] = value;
   return json;
 }
 
-std::map<std::string, ordered_json> parameters_from(const JsonMember& json) {
-  std::map<std::string, ordered_json> parameters;
+std::map<std::string, Json> parameters_from(const JsonMember& json) {
+  std::map<std::string, Json> parameters;
   (void)json.members();
   for (const auto& [name, value] : json.json().items()) parameters[name] = value;
   return parameters;
 }
 
-ordered_json json_of(const Row& row) {
-  ordered_json json = {{"parameters", json_of(row.parameters)}};
+Json json_of(const Row& row) {
+  Json json = {{"parameters", json_of(row.parameters)}};
   if (!row.failed.empty()) {
     json["failed"] = row.failed;
     return json;
   }
   json["time_us"] = json_of(row.time_us);
   json["frame_us"] = json_of(row.frame_us);
-  json["cost"] = ordered_json::object();
+  json["cost"] = Json::object();
   for (const auto& [counter, total] : row.cost) json["cost"][counter] = total;
   json["frames"] = row.frames;
   json["step_s"] = row.step_s;
   json["load"] = row.load();
   json["mean_us"] = row.mean_us;
   json["work_us"] = row.work_us;
-  json["errors"] = ordered_json::object();
+  json["errors"] = Json::object();
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
     const std::optional<Spread>& error = row.errors[i];
     json["errors"][kKinds[i].name] =
-        error ? ordered_json{{"median", error->median}, {"most", error->most}, {"unit", kKinds[i].unit}}
-              : ordered_json();
+        error ? Json{{"median", error->median}, {"most", error->most}, {"unit", kKinds[i].unit}} : Json();
   }
-  json["trials"] = ordered_json::array();
+  json["trials"] = Json::array();
   for (const TrialFigures& trial : row.trials) {
-    ordered_json figures = {{"seed", trial.seed}, {"time_us", trial.time_us}};
+    Json figures = {{"seed", trial.seed}, {"time_us", trial.time_us}};
     for (std::size_t i = 0; i < kKinds.size(); ++i)
-      figures[kKinds[i].name] = trial.errors[i] ? ordered_json(*trial.errors[i]) : ordered_json();
+      figures[kKinds[i].name] = trial.errors[i] ? Json(*trial.errors[i]) : Json();
     json["trials"].push_back(std::move(figures));
   }
-  json["dominated"] = row.dominated ? ordered_json(*row.dominated) : ordered_json(false);
+  json["dominated"] = row.dominated ? Json(*row.dominated) : Json(false);
   return json;
 }
 
@@ -103,10 +101,10 @@ Kind kind_from(const JsonMember& json) {
   return static_cast<Kind>(kind - kKinds.begin());
 }
 
-ordered_json parsed(const std::string& text) {
+Json parsed(const std::string& text) {
   try {
-    return ordered_json::parse(text);
-  } catch (const ordered_json::parse_error& error) {
+    return parse_json(text);
+  } catch (const Json::parse_error& error) {
     throw JsonFault(fmt::format("line {} is no JSON, or the file ends in it", line_of_byte(text, error.byte)));
   }
 }
@@ -126,7 +124,7 @@ Table table_from(const JsonMember& json) {
   if (!json.at("duration").is_null()) table.duration = json.at("duration").number();
   table.fixed = parameters_from(json.at("fixed"));
   table.truth = json.at("truth").text();
-  table.convergence_json = json.at("convergence").json().dump();
+  table.convergence_json = json_text(json.at("convergence").json());
   table.by = kind_from(json.at("by"));
   for (const JsonMember& row : json.at("rows").elements()) table.rows.push_back(row_from(row));
   return table;
@@ -141,8 +139,8 @@ std::string unit_suffix(const std::string& unit) {
   return suffix;
 }
 
-std::string csv_text(const ordered_json& value) {
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+std::string csv_text(const Json& value) {
+  std::string text = value.is_string() ? value.get<std::string>() : json_text(value);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -151,33 +149,33 @@ std::string csv_text(const ordered_json& value) {
 
 }  // namespace
 
-ordered_json json_of(const Table& table) {
-  ordered_json json = {{"format", kFormat},
-                       {"format_version", 1},
-                       {"version", table.version},
-                       {"commit", table.commit},
-                       {"scenario", table.scenario},
-                       {"scenario_sha256", table.scenario_sha256},
-                       {"machine", {{"cpu", table.cpu}, {"compiler", table.compiler}}},
-                       {"seed", table.seed},
-                       {"repeat", table.repeat},
-                       {"coverage", coverage_of(table.repeat)},
-                       {"duration", table.duration ? ordered_json(*table.duration) : ordered_json()},
-                       {"fixed", json_of(table.fixed)},
-                       {"truth", table.truth},
-                       {"convergence", ordered_json::parse(table.convergence_json)},
-                       {"by", kKinds[index_of(table.by)].name},
-                       {"notes", table.notes},
-                       {"rows", ordered_json::array()}};
+Json json_of(const Table& table) {
+  Json json = {{"format", kFormat},
+               {"format_version", 1},
+               {"version", table.version},
+               {"commit", table.commit},
+               {"scenario", table.scenario},
+               {"scenario_sha256", table.scenario_sha256},
+               {"machine", {{"cpu", table.cpu}, {"compiler", table.compiler}}},
+               {"seed", table.seed},
+               {"repeat", table.repeat},
+               {"coverage", coverage_of(table.repeat)},
+               {"duration", table.duration ? Json(*table.duration) : Json()},
+               {"fixed", json_of(table.fixed)},
+               {"truth", table.truth},
+               {"convergence", parse_json(table.convergence_json)},
+               {"by", kKinds[index_of(table.by)].name},
+               {"notes", table.notes},
+               {"rows", Json::array()}};
   for (const Row& row : table.rows) json["rows"].push_back(json_of(row));
   json["front"] = front_of(table.rows, table.by);
-  if (!table.peers_json.empty()) json["peers"] = ordered_json::parse(table.peers_json);
+  if (!table.peers_json.empty()) json["peers"] = parse_json(table.peers_json);
   return json;
 }
 
 Table table_from(const std::string& name, const std::string& text) {
   try {
-    const ordered_json json = parsed(text);
+    const Json json = parsed(text);
     Table table = table_from(JsonMember(json, ""));
     find_dominated(table.rows, table.by);
     return table;
@@ -189,7 +187,7 @@ Table table_from(const std::string& name, const std::string& text) {
 
 std::string csv_of(const Table& table) {
   std::string csv;
-  const std::map<std::string, ordered_json> none;
+  const std::map<std::string, Json> none;
   const auto& dials = table.rows.empty() ? none : table.rows.front().parameters;
   csv = "setting";
   for (const auto& [name, value] : dials) csv += "," + csv_text(name);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/error.hpp"
+#include "engine/base/json.hpp"
 #include "engine/base/pinned_math.hpp"
 #include "engine/base/svg.hpp"
 #include "engine/base/text.hpp"
@@ -14,8 +15,8 @@
 namespace verisim::tradeoff {
 namespace {
 
-std::string plain(const nlohmann::ordered_json& value) {
-  return shown(value.is_string() ? value.get<std::string>() : value.dump(), 40);
+std::string plain(const Json& value) {
+  return shown(value.is_string() ? value.get<std::string>() : json_text(value), 40);
 }
 
 /// Columns of the table: those of /errors that say most, and that of the front.
@@ -62,7 +63,7 @@ struct Decades {
 
 }  // namespace
 
-std::string text_of(const std::map<std::string, nlohmann::ordered_json>& parameters) {
+std::string text_of(const std::map<std::string, Json>& parameters) {
   std::string text;
   for (const auto& [name, value] : parameters)
     text += fmt::format("{}{}={}", text.empty() ? "" : ", ", shown(name, 40), plain(value));

@@ -1,8 +1,8 @@
 #include "engine/wii/pose_solver.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "engine/base/cholesky.hpp"
 #include "engine/base/contract.hpp"
 #include "engine/base/error.hpp"
 #include "engine/wii/gravity.hpp"
@@ -110,8 +110,8 @@ SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright&
       solved.X_RH = at;
       solved.cost = best_cost = normal.cost;
       A = normal.A;
-      const Eigen::LLT<Matrix6d> factor(A);
-      if (factor.info() != Eigen::Success) return solved;
+      const Cholesky6 factor(A);
+      if (!factor.is_positive_definite()) return solved;
       move = factor.solve(normal.b);
       const double length = move.cwiseAbs().maxCoeff();
       if (!std::isfinite(length)) return solved;
@@ -122,7 +122,7 @@ SolvedPose PoseSolver::solve(std::span<const Sighting> sightings, const Upright&
     at = moved(solved.X_RH, move);
     if (!(move.dot(A * move) < kConverged)) continue;
     solved.X_RH = at;
-    solved.covariance = A.llt().solve(Matrix6d::Identity());
+    solved.covariance = Cholesky6(A).inverse();
     solved.found = true;
     return solved;
   }

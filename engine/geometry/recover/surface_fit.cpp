@@ -13,6 +13,8 @@ namespace verisim::recover {
 namespace {
 
 using Row = SurfaceValue::Row;
+using Normal =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;  // 7 x 7; of fixed size it costs 5 s of a compile
 
 // Bounds of the work and of rounding, no heuristics: those are in RecoverThresholds.
 constexpr int kIterations = 40;
@@ -39,7 +41,7 @@ SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points, double to
   double cost = cost_of(s, points), damping = 1e-4;
   for (int i = 0; i < kIterations && cost > 0; ++i) {
     const Vector3d x = s.axis.unitOrthogonal(), y = s.axis.cross(x);
-    Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();
+    Normal normal = Normal::Zero(7, 7);
     Row right = Row::Zero(), d;
     for (const Vector3d& p : points) {
       const double distance = s.row(p, x, y, d);
@@ -49,7 +51,7 @@ SurfaceValue refined(SurfaceValue s, std::span<const Vector3d> points, double to
     const double scale = normal.trace() / 7;
     const double cost_before = cost;
     while (damping < kMostDamping) {
-      Eigen::Matrix<double, 7, 7> damped = normal;
+      Normal damped = normal;
       damped.diagonal().array() += std::max(damping * damping, kSmallestDamping) * scale;
       const SurfaceValue next = s.moved(damped.ldlt().solve(right), x, y);
       const double next_cost = cost_of(next, points);

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "engine/base/cholesky.hpp"
 #include "engine/base/error.hpp"
 #include "engine/simulation/stages/groups.hpp"
 
@@ -390,7 +391,7 @@ void ExactResponse::read_bodies(std::size_t island, double dt) {
     // exactly these forces give keeps the momentum of bodies that push each other.
     Vector6d impulse;
     impulse << dt * of.wrench.force, dt * of.wrench.torque;
-    of.velocity_after = of.step.free + verisim::solved(of.step.A, impulse);
+    of.velocity_after = of.step.free + Cholesky6(of.step.A).solve(impulse);
     if (solver_->was_hit()) continue;
     of.rounded = (of.velocity_after - of.velocity).head<3>().norm();
     of.velocity = of.velocity_after;
