@@ -139,7 +139,7 @@ std::vector<StabilityRow> compute(std::vector<Task> tasks, const StabilityOption
   std::vector<StabilityRow> rows(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) rows[i].task = std::move(tasks[i]);
   batch::Workers workers(o.jobs > 0 ? o.jobs : batch::cores(), {},
-                         [&](std::uint64_t i) { return json_text(json_of(rows[i].task.compute())); });
+                         [&](std::uint64_t i) { return json_text(cli::json_of(rows[i].task.compute())); });
   const ProgressLine line(!o.quiet);
   std::size_t begun = 0, done = 0;
   while (done < rows.size()) {

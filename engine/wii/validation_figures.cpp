@@ -1,7 +1,7 @@
 #include "engine/wii/validation_figures.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -109,9 +109,9 @@ void ValidationFigures::add_valid(const SensedReport& sensed, const Report& repo
   orientation_errors_.push_back(
       vector_from_rotation((report.pose.rotation * sensed.X_LH.rotation.conjugate()).normalized()));
   const Matrix3d covariance = report.covariance.topLeftCorner<3, 3>();
-  nees_.push_back(e.dot(covariance.ldlt().solve(e)) / 3);
+  nees_.push_back(e.dot(covariance.inverse() * e) / 3);
   const Matrix3d turned = report.covariance.bottomRightCorner<3, 3>();
-  orientation_nees_.push_back(orientation_errors_.back().dot(turned.ldlt().solve(orientation_errors_.back())) / 3);
+  orientation_nees_.push_back(orientation_errors_.back().dot(turned.inverse() * orientation_errors_.back()) / 3);
   error_along_velocity_ += e.dot(velocity);
   velocity_square_ += velocity.squaredNorm();
 }
