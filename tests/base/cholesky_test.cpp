@@ -4,9 +4,11 @@
 
 #include "tests/support/random_inputs.hpp"
 
-using namespace verisim;
-
+namespace verisim::cholesky_test {
 namespace {
+
+using test::Inputs;
+using test::seeds;
 
 Matrix6d positive_definite(Inputs& draw) {
   Matrix6d root;
@@ -14,8 +16,6 @@ Matrix6d positive_definite(Inputs& draw) {
     for (int j = 0; j < 6; ++j) root(i, j) = draw.between(-1, 1);
   return root * root.transpose() + Matrix6d::Identity();
 }
-
-}  // namespace
 
 TEST(Cholesky6, GivesBackWhatTheMatrixWasMultipliedWith) {
   for (const std::uint64_t seed : seeds(50)) {
@@ -36,3 +36,6 @@ TEST(Cholesky6, SaysThatAMatrixIsNotPositiveDefinite) {
   A(3, 3) = -1;
   EXPECT_FALSE(Cholesky6(A).is_positive_definite());
 }
+
+}  // namespace
+}  // namespace verisim::cholesky_test

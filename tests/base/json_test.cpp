@@ -4,7 +4,8 @@
 
 #include "engine/base/error.hpp"
 
-using namespace verisim;
+namespace verisim::json_test {
+namespace {
 
 TEST(JsonText, KeepsTheOrderOfMembers) {
   EXPECT_EQ(json_text(parse_json(R"({"b": 1, "a": [2, null]})")), R"({"b":1,"a":[2,null]})");
@@ -26,3 +27,6 @@ TEST(ParseJson, TellsTheLineOfWhatAUserGave) {
   EXPECT_TRUE(parse_json_or_discard("{").is_discarded());
   EXPECT_THROW((void)parse_json("{"), Json::parse_error);
 }
+
+}  // namespace
+}  // namespace verisim::json_test
