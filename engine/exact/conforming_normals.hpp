@@ -7,17 +7,10 @@
 #pragma once
 
 #include <array>
-#include <span>
 
 #include "engine/geometry/analytic_surface.hpp"
 
 namespace verisim::exact {
-
-/// Angles from the closest normal [rad]. What rests comes to lie within half of the first, which is as much as its
-/// force goes to and fro; each next is farther by a factor, so that planes leave a small part of the clearance wherever
-/// the point goes.
-inline constexpr std::array<double, 14> kTurns = {0.0004, 0.0015, 0.006, 0.02,  0.032, 0.051, 0.082,
-                                                  0.131,  0.21,   0.336, 0.537, 0.859, 1.37,  2.2};
 
 /// Other normals of a hollow surface, beside the one that is closest to a point.
 struct ConformingNormals {
