@@ -10,7 +10,7 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # asserts stay on: a broken promise must not go unseen in a result
 
-# Reading headers costs most of a compile (Eigen alone 1 s), so up to eight files of a library are compiled as one unit.
+# Reading headers costs most of a compile (Eigen alone 1 s), so several files of a library are compiled as one unit.
 # Each must still compile alone (-DVERISIM_UNITY=OFF), and names in its anonymous namespace are unique within its library:
 # clang-tidy (tests/lint) reads each library as one unit and finds those that are not.
 option(VERISIM_UNITY "Compile several source files as one" ON)

@@ -1,6 +1,6 @@
 #include "engine/robot/odometry.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "engine/base/contract.hpp"
@@ -44,9 +44,9 @@ CountsPerDisplacement counts_per_displacement(const MecanumGeometry& geometry, d
 
 WheelMap::WheelMap(const CountsPerDisplacement& counts) {
   VERISIM_ASSERT(counts.allFinite());
-  const Eigen::Matrix3d normal = counts.transpose() * counts;
-  VERISIM_ASSERT(normal.determinant() > 0);
-  inverse_ = normal.inverse() * counts.transpose();
+  const Eigen::LDLT<Eigen::Matrix3d> normal(counts.transpose() * counts);
+  VERISIM_ASSERT(normal.vectorD().minCoeff() > 0);
+  inverse_ = normal.solve(counts.transpose());
 }
 
 PlanarTwist WheelMap::displacement(const PerWheel& counts) const {

@@ -1,6 +1,6 @@
 #include "engine/robot/rolling_base.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -86,7 +86,7 @@ void RollingBase::factorize(const std::array<MotorDrive, kWheels>& drive) {
     A += e.holds_along * place_[i].along * place_[i].along.transpose() +
          e.holds_across * place_[i].across * place_[i].across.transpose() - e.inverse * e.q * e.q.transpose();
   }
-  inverse_ = A.inverse();
+  inverse_ = A.ldlt().solve(Matrix3d::Identity());
   factorized_ = guess_;
   is_factorized_ = true;
 }

@@ -33,7 +33,7 @@ using DividerSet = std::array<std::uint32_t, 3>;
       continue;
     }
     Matrix3d JJ = J * J.transpose();
-    if (n == 2) JJ(2, 2) = 1;                                                      // no third
+    if (n == 2) JJ(2, 2) = 1;
     if (std::abs(JJ.determinant()) < 1e-12) return Vector3d::Constant(kInfinity);  // surfaces that never cross here
     y -= J.transpose() * (JJ.inverse() * g);
   }

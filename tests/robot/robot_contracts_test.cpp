@@ -37,7 +37,7 @@ TEST(MecanumDeathTest, HasWheels) {
 }
 
 TEST(OdometryDeathTest, NeedsAMapOfFullRankAndTime) {
-  EXPECT_BROKEN(WheelMap(CountsPerDisplacement::Zero()), "normal.determinant() > 0");
+  EXPECT_BROKEN(WheelMap(CountsPerDisplacement::Zero()), "normal.vectorD().minCoeff() > 0");
   EXPECT_BROKEN(CountRate(0, 1), "is_positive(period)");
   EXPECT_BROKEN(CountRate(1, 0.1), "time >= period");
 }
