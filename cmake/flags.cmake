@@ -26,7 +26,7 @@ add_library(verisim_flags INTERFACE)
 # What assertions say of their place begins at the project's folder, so that the compiler cache serves a clone elsewhere.
 target_compile_options(verisim_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 target_compile_options(verisim_flags INTERFACE -ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
-# g++ collects garbage only above 600 MB: 4 % of its time (start.sh counts with 1.5 GB a compiler).
+# g++ collects garbage only above 600 MB: 4 % of its time (start.sh counts with 1.8 GB a compiler).
 target_compile_options(verisim_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=600000>)
 target_include_directories(verisim_flags INTERFACE ${PROJECT_SOURCE_DIR})
 # Small functions on small arrays (engine/exact): -O3 inlines them.

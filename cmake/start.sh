@@ -70,11 +70,11 @@ install_optional_packages() {
     echo "note: not installed: $missing; what needs them is left out and says so; clang-tidy is then the older one" >&2
 }
 
-# Compilers at once: one per core, but 1.5 GB of memory for each.
+# Compilers at once: one per core, but 1.8 GB of memory for each (1.6 were seen).
 jobs_at_once() {
   local cores memory_jobs
   cores=$(nproc)
-  memory_jobs=$(awk '/^MemTotal:/ {print int($2 / 1.5e6)}' /proc/meminfo)
+  memory_jobs=$(awk '/^MemTotal:/ {print int($2 / 1.8e6)}' /proc/meminfo)
   [ "$memory_jobs" -ge 1 ] || memory_jobs=1
   echo $((cores < memory_jobs ? cores : memory_jobs))
 }
