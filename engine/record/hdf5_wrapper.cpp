@@ -156,11 +156,9 @@ void keep_links_in_header(const Handle& creation) {
   check_status(H5Pset_link_phase_change(creation, 0xffff, 0xffff), "links");
 }
 
-}  // namespace
-
 Handle file_creation() {
   Handle list(check(H5Pcreate(H5P_FILE_CREATE), "creation"), H5Pclose);
-  check_status(H5Pset_obj_track_times(list, false), "times");  // equal runs, equal bytes
+  check_status(H5Pset_obj_track_times(list, false), "times");
   // The system's cache is written page by page, so kill -9 tears what lies across two of its pages. In a file with
   // pages of its own no index block does that unless it is larger than one.
   constexpr hsize_t kPage = 4096;  // bytes, of the system
@@ -173,9 +171,40 @@ Handle file_creation() {
 
 Handle link_creation() {
   Handle list(check(H5Pcreate(H5P_LINK_CREATE), "links"), H5Pclose);
-  check_status(H5Pset_create_intermediate_group(list, 1), "links");
   check_status(H5Pset_char_encoding(list, H5T_CSET_UTF8), "links");
   return list;
+}
+
+/// Creates the groups on the way to `path` that are missing. HDF5 would, but as its default says: with times, and with
+/// a heap for many links.
+void make_way(hid_t location, const std::string& path) {
+  for (std::size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1)) {
+    const std::string group = path.substr(0, at);
+    if (!exists(location, group)) static_cast<void>(create_group(location, group));
+  }
+}
+
+/// HDF5's own default for groups, without times as long as this lives. A file with pages has an object header that HDF5
+/// makes from it, whatever the file's list says: its times would make equal content differ by the second.
+class GroupsWithoutTimes {
+ public:
+  GroupsWithoutTimes() {
+    check_status(H5Pget_obj_track_times(H5P_GROUP_CREATE_DEFAULT, &before_), "times");
+    check_status(H5Pset_obj_track_times(H5P_GROUP_CREATE_DEFAULT, false), "times");
+  }
+  ~GroupsWithoutTimes() { H5Pset_obj_track_times(H5P_GROUP_CREATE_DEFAULT, before_); }
+  GroupsWithoutTimes(const GroupsWithoutTimes&) = delete;
+  GroupsWithoutTimes& operator=(const GroupsWithoutTimes&) = delete;
+
+ private:
+  hbool_t before_ = true;
+};
+
+}  // namespace
+
+Handle create_file(const std::string& path) {
+  const GroupsWithoutTimes no_times;
+  return {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation(), file_access()), path.c_str()), H5Fclose};
 }
 
 Handle open_group(hid_t location, const std::string& path) {
@@ -183,11 +212,19 @@ Handle open_group(hid_t location, const std::string& path) {
 }
 
 Handle create_group(hid_t location, const std::string& path) {
+  make_way(location, path);
   const Handle links = link_creation();
   const Handle creation(check(H5Pcreate(H5P_GROUP_CREATE), "group"), H5Pclose);
   check_status(H5Pset_obj_track_times(creation, false), "times");
   keep_links_in_header(creation);
   return {check(H5Gcreate2(location, path.c_str(), links, creation, H5P_DEFAULT), path.c_str()), H5Gclose};
+}
+
+Handle create_dataset(hid_t location, const std::string& path, hid_t type, hid_t space, hid_t creation) {
+  make_way(location, path);
+  const Handle links = link_creation();
+  check_status(H5Pset_obj_track_times(creation, false), "times");
+  return {check(H5Dcreate2(location, path.c_str(), type, space, links, creation, H5P_DEFAULT), path.c_str()), H5Dclose};
 }
 
 Handle open_dataset(hid_t location, const std::string& path) {
@@ -271,13 +308,9 @@ Shape checked_shape(hid_t dataset, std::size_t element_bytes) {
 
 Handle write_array(hid_t location, const std::string& path, Dtype dtype, const Shape& shape, const void* data,
                    const std::string& units, const std::string& description) {
-  const Handle links = link_creation();
   const Handle creation(check(H5Pcreate(H5P_DATASET_CREATE), "dataset"), H5Pclose);
-  check_status(H5Pset_obj_track_times(creation, false), "times");
   const Handle space = simple_space(shape);
-  Handle dataset(
-      check(H5Dcreate2(location, path.c_str(), stored_type(dtype), space, links, creation, H5P_DEFAULT), path.c_str()),
-      H5Dclose);
+  Handle dataset = create_dataset(location, path, stored_type(dtype), space, creation);
   if (H5Sget_simple_extent_npoints(space) > 0) {
     VERISIM_ASSERT(data != nullptr);
     check_status(H5Dwrite(dataset, memory_type(dtype), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path.c_str());

@@ -79,10 +79,13 @@ using Shape = std::vector<hsize_t>;
 /// The same for files that stay open while others may read them in this process: h5py closes as HDF5's default says,
 /// and two that have a file open at a time have to agree.
 [[nodiscard]] Handle reader_access();
-[[nodiscard]] Handle file_creation();  ///< property list: no times, links in order of creation
-[[nodiscard]] Handle link_creation();  ///< property list: creates the groups on the way
+/// A new file, in place of any at `path`: no times (equal content, equal bytes), links in order of creation.
+[[nodiscard]] Handle create_file(const std::string& path);
 [[nodiscard]] Handle open_group(hid_t location, const std::string& path);
+/// A group, with those on the way to it, without times.
 [[nodiscard]] Handle create_group(hid_t location, const std::string& path);
+/// A dataset, with the groups on the way to it, without times. `creation`: the caller's list, which loses its times.
+[[nodiscard]] Handle create_dataset(hid_t location, const std::string& path, hid_t type, hid_t space, hid_t creation);
 [[nodiscard]] Handle open_dataset(hid_t location, const std::string& path);
 [[nodiscard]] bool exists(hid_t location, const std::string& name);  ///< a link of that name, one level
 

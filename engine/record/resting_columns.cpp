@@ -69,12 +69,8 @@ Handle RestingColumns::create(hid_t file, const Column& column, hid_t type) cons
   const Handle space(check(H5Screate_simple(rank, now, max), "shape"), H5Sclose);
   const Handle creation(check(H5Pcreate(H5P_DATASET_CREATE), "dataset"), H5Pclose);
   check_status(H5Pset_chunk(creation, rank, chunk), "chunk");
-  check_status(H5Pset_obj_track_times(creation, false), "times");
   if (!is_zero(column)) check_status(H5Pset_deflate(creation, 1), "compression");
-  const Handle links = hdf5::link_creation();
-  Handle dataset(
-      check(H5Dcreate2(file, column.path.c_str(), type, space, links, creation, H5P_DEFAULT), column.path.c_str()),
-      H5Dclose);
+  Handle dataset = hdf5::create_dataset(file, column.path, type, space, creation);
   hdf5::write_attribute(dataset, kRests, std::int64_t{1});
   if (!is_zero(column)) store_chunks(dataset, column, 0, stored_);
   return dataset;

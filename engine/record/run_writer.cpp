@@ -47,9 +47,7 @@ Handle growing_dataset(hid_t file, const std::string& path, hid_t type, hsize_t 
   const Handle space(check(H5Screate_simple(rank, now, max), "shape"), H5Sclose);
   const Handle creation(check(H5Pcreate(H5P_DATASET_CREATE), "dataset"), H5Pclose);
   check_status(H5Pset_chunk(creation, rank, chunk), "chunk");
-  check_status(H5Pset_obj_track_times(creation, false), "times");
-  const Handle links = hdf5::link_creation();
-  return {check(H5Dcreate2(file, path.c_str(), type, space, links, creation, H5P_DEFAULT), path.c_str()), H5Dclose};
+  return hdf5::create_dataset(file, path, type, space, creation);
 }
 
 // Only the last chunk is ever written again: a small cache of its own for each dataset.
@@ -185,9 +183,7 @@ RunWriter::RunWriter(const std::string& path, const Schema& schema, const RunHea
 }
 
 void RunWriter::create(const RunHeader& header) {
-  const Handle file(
-      check(H5Fcreate(part_.path().c_str(), H5F_ACC_TRUNC, hdf5::file_creation(), hdf5::file_access()), path_.c_str()),
-      H5Fclose);
+  const Handle file = hdf5::create_file(part_.path());
   hdf5::write_attribute(file, "format", std::string(kRunFormat));
   hdf5::write_attribute(file, "format_version", kRunFormatVersion);
   hdf5::write_attribute(file, "columns", static_cast<std::int64_t>(schema_.columns().size() + schema_.table().size()));

@@ -113,8 +113,7 @@ Trace read_trace_hdf5(const std::string& name, const std::string& content) {
 void write_trace_hdf5(const std::string& path, const Trace& trace) {
   const hdf5::Session session;
   try {
-    Handle file(check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, hdf5::file_creation(), hdf5::file_access()), path.c_str()),
-                H5Fclose);
+    Handle file = hdf5::create_file(path);
     hdf5::write_attribute(file, "kind", trace.kind);
     if (trace.rate_hz > 0) hdf5::write_attribute(file, "rate_hz", trace.rate_hz);
     hdf5::write_attribute(file, "source", trace.source);

@@ -2,6 +2,7 @@
 and a folder never. Runs at the same time never share a name that they were not given."""
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -15,6 +16,12 @@ FOREIGN = {  # what a user would miss; none is empty
     "a text": b"my notes\n", "a table": b"a,b\n1,2\n", "a script": SMALL.encode(), "bytes": bytes(range(256)),
     "a broken HDF5 file": b"\x89HDF\r\n\x1a\n" + bytes(40), "a drawing": b"<?xml version='1.0'?>\n<svg/>\n",
 }
+
+
+def timed_objects(content):
+    """Objects of an HDF5 file, and how many of them keep times: bit 5 of the flags of a header of version 2."""
+    headers = [found.start() for found in re.finditer(b"OHDR\x02", content)]
+    return len(headers), sum(content[at + 5] >> 5 & 1 for at in headers)
 
 
 class Outputs(ProgramTest):
@@ -164,6 +171,18 @@ class Outputs(ProgramTest):
         self.refuse(5, ["r7_coverage.csv", "--force"], "reproduce", "--only", "R7", "--quick", "--quiet", "-o", "r")
         self.succeed("reproduce", "--only", "R7", "--quick", "--quiet", "-o", "r", "--force")
         self.succeed("reproduce", "--only", "R7", "--quick", "--quiet", "-o", "r")
+
+    def test_no_object_of_hdf5_keeps_a_time(self):
+        with h5py.File(self.path("timed.h5"), "w", libver="latest") as f:
+            f.create_dataset("a", data=[1], track_times=True)
+        self.assertGreater(timed_objects(self.content("timed.h5"))[1], 0)
+        for command, out in self.each():
+            if not out.endswith(".h5"):
+                continue
+            self.succeed(*command)
+            objects, timed = timed_objects(self.content(out))
+            self.assertGreater(objects, 3)
+            self.assertEqual(timed, 0)
 
     def test_a_killed_runs_file_is_a_run_file(self):
         process = subprocess.Popen([VERISIM, "run", "small.lua", "-o", "out.h5", "--duration", "600", "--quiet"],

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "engine/record/run_file.hpp"
 #include "tests/support/folder.hpp"
@@ -186,6 +188,11 @@ inline std::string content_of(const std::string& path) {
 
 inline void write_content(const std::string& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
+}
+
+/// HDF5 stores times by the second: files written on both sides of this differ if one of theirs is kept.
+inline void wait_for_the_next_second() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
 }
 
 /// What `work` throws; an Error of kind check_failed with an empty text if it throws nothing.
