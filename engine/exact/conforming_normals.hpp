@@ -7,10 +7,16 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "engine/geometry/analytic_surface.hpp"
 
 namespace verisim::exact {
+
+/// Angles from the closest normal [rad]. What rests comes to lie within half of the first, which is as much as its
+/// force goes to and fro. Planes at a and b leave a part (b - a)^2 / 8 of the clearance between them.
+inline constexpr std::array<double, 12> kTurns = {0.0004, 0.0015, 0.006, 0.02, 0.05, 0.12,
+                                                  0.25,   0.45,   0.75,  1.1,  1.6,  2.3};
 
 /// Other normals of a hollow surface, beside the one that is closest to a point.
 struct ConformingNormals {

@@ -129,6 +129,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     (void)evaluate_segment(placed, curve, count, face, c);  // counts its depth
   }
   const bool is_corner = placed.feature->half_width == 0;
+  add_along(placed, curve, best, count, face);
   if (placed.feature->own_face != kNoFace || is_corner) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
@@ -213,15 +214,11 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   constexpr double kDeep = 1e-4;  // m: deeper than motions lead
   if (!placed.is_arc() || !is_between(placed, c) || c.gap < -kDeep) return false;
   const RelativeMotion& motion = pair_.motion;
+  const double clearance = clearance_along(placed, curve, c);
+  if (!(clearance > 0 && slide(c.p) < motion.thresholds.conforms * clearance)) return false;
   Measure here{};
   with_measure(curve, [&](auto&& measure_at) { here = measure_at(c.place.c, c.place.s); });
   const double length = placed.tangent(c.place).norm();
-  const double bend = here.bend / (length * length);  // 1/m, of the gap along the curve
-  const double of_curve = c.at.normal.dot(placed.origin - c.p) / (length * length);
-  const double of_face = of_curve - bend;
-  if (!(bend > 0 && of_face * of_curve > 0)) return false;
-  const double slide = std::max(pair_.moved(c.p, motion.free_twist).norm(), pair_.moved(c.p, motion.last_twist).norm());
-  const double passes = slide * of_face * of_curve / bend;      // rad, along the curve
   const Vector3d axis = placed.x.cross(placed.y).normalized();  // turns about it move the curve along itself
   const auto tilt = [&](const Vector3d& omega) { return motion.dt * (omega - omega.dot(axis) * axis).norm(); };
   const double tilts = motion.thresholds.coincident / placed.feature->half_length +
@@ -229,7 +226,56 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   constexpr double kGain =
       1e-9;  // m, above that of closest_place: at the limit of two segments one of them has the row
   if (here.slope * here.slope < 2 * kGain * here.bend) return false;
-  return passes < motion.thresholds.conforms && std::abs(here.slope) / length > tilts;
+  return std::abs(here.slope) / length > tilts;
+}
+
+/// How far it moves a body until an arc's closest place has turned by a radian, where it rolls round within a hollow
+/// face, or as a hollow one round a face [m]; else below 0.
+double Search::clearance_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const {
+  Measure here{};
+  with_measure(curve, [&](auto&& measure_at) { here = measure_at(c.place.c, c.place.s); });
+  const double square = placed.tangent(c.place).squaredNorm();
+  const double bend = here.bend / square;  // 1/m, of the gap along the curve
+  const double of_curve = c.at.normal.dot(placed.origin - c.p) / square;
+  const double of_face = of_curve - bend;
+  return bend > 0 && of_face * of_curve > 0 ? bend / (of_face * of_curve) : -1;
+}
+
+/// How far a place slides within the step, at most: without contact, or as it did in the last one [m].
+double Search::slide(const Vector3d& p) const {
+  const RelativeMotion& motion = pair_.motion;
+  return std::max(pair_.moved(p, motion.free_twist).norm(), pair_.moved(p, motion.last_twist).norm());
+}
+
+/// Adds rows along an arc that fits closely and is held: its closest place may come to any place of it within the step,
+/// and one tangent plane says little of the others (conforming_normals.hpp). What moves farther than its clearance in a
+/// step has another place each time, and forces that change with it.
+void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                       std::uint32_t count, std::uint32_t face) {
+  constexpr double kFlush = 1e-7;  // m: less is no clearance, and all of the curve touches
+  if (!placed.is_arc() || placed.feature->own_face != kNoFace) return;
+  const double clearance = clearance_along(placed, curve, best);
+  if (!(clearance > kFlush && slide(best.p) > pair_.motion.thresholds.conforms * clearance)) return;
+  if (pair_.moved(best.p, pair_.motion.last_twist).norm() > clearance) return;
+  const double half = placed.feature->half_width;
+  Measure here{};
+  with_measure(curve, [&](auto&& measure_at) { here = measure_at(best.place.c, best.place.s); });
+  if (std::abs(here.slope) > half * here.bend) return;  // the closest place is that of another segment
+  constexpr std::size_t kNear = 6;                      // of the turns: segments' ends are farther
+  for (const double turn : std::span(kTurns).first(kNear)) {
+    for (const double sense : {-1.0, 1.0}) {
+      const double t = best.place.t + sense * turn;
+      const double segments = std::round(t / (2 * half));
+      const double number = static_cast<double>(best.sample) + segments;
+      if (!(number >= placed.feature->begin && number < placed.feature->end)) continue;
+      Candidate c;
+      c.group = best.group;
+      c.sample = static_cast<std::uint32_t>(number);
+      c.place = place_at(true, pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], t - 2 * half * segments);
+      if (!evaluate_candidate(placed, face, 1, c) || !(c.gap_ahead < kSlack)) continue;
+      add_row(placed, c, count, face, curving(pair_, placed, c, face, 0));
+    }
+  }
 }
 
 /// Adds the rows of a ball or a corner that may come to other places of a hollow within the step
@@ -239,9 +285,7 @@ void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, 
   const RelativeMotion& motion = pair_.motion;
   const AnalyticSurface& surface = *pair_.base.faces[face].surface;
   const ConformingNormals around = conforming_normals(surface, best.p, best.at);
-  const double slide =
-      std::max(pair_.moved(best.p, motion.free_twist).norm(), pair_.moved(best.p, motion.last_twist).norm());
-  if (!(slide > motion.thresholds.conforms * around.radius)) return;
+  if (!(slide(best.p) > motion.thresholds.conforms * around.radius)) return;
   const bool is_corner = placed.feature->own_face == kNoFace;
   const auto add = [&](const Vector3d& normal) {
     Candidate c = best;

@@ -53,6 +53,11 @@ class Search {
   [[nodiscard]] bool is_near(const PlacedFeature& placed, std::uint32_t count, Candidate& c) const;
   [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
+  [[nodiscard]] double clearance_along(const PlacedFeature& placed, const CurveFromSurface& curve,
+                                       const Candidate& c) const;
+  [[nodiscard]] double slide(const Vector3d& p) const;
+  void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best, std::uint32_t count,
+                 std::uint32_t face);
   void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
   /// `shares`: the group's stiffness with the closest place.
