@@ -70,7 +70,7 @@ install_optional_packages() {
     echo "note: not installed: $missing; what needs them is left out and says so; clang-tidy is then the older one" >&2
 }
 
-# Compilers at once: one per core, but 1.8 GB of memory for each (1.6 were seen).
+# Compilers at once: one per core, but 1.8 GB of memory for each (1.6 were seen, of engine/geometry).
 jobs_at_once() {
   local cores memory_jobs
   cores=$(nproc)

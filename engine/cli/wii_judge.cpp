@@ -100,7 +100,7 @@ std::string alignment_text(const std::string& alignment, const Pose& X_TE) {
 void print(const JudgeCommand& c, const wii::Judgement& j, std::size_t samples) {
   if (c.json) {
     Json out;
-    out["rows"] = Json::array({json_of(j.row)});  // bare braces: g++ and clang++ differ
+    out["rows"] = Json::array({row_json(j.row)});  // bare braces: g++ and clang++ differ
     const Vector3d& p = j.X_TE.position;
     const auto& q = j.X_TE.rotation.coeffs();
     out["alignment"] = c.alignment;

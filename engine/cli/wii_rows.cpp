@@ -24,7 +24,7 @@ Json known(double value) {
 
 }  // namespace
 
-Json json_of(const wii::ValidationRow& r) {
+Json row_json(const wii::ValidationRow& r) {
   Json j = {{"sensor", r.sensor},
             {"trajectory", r.trajectory},
             {"tracker", r.tracker},

@@ -12,7 +12,7 @@
 namespace verisim::cli {
 
 /// What is not known (NaN) is null.
-[[nodiscard]] Json json_of(const wii::ValidationRow& row);
+[[nodiscard]] Json row_json(const wii::ValidationRow& row);
 
 /// FILE without its ending: plots are named after it.
 [[nodiscard]] std::string stem_of(const OutOptions& out);

@@ -89,7 +89,7 @@ void run_validate(ValidateOptions& o) {
   if (o.json) {
     Json j;
     j["rows"] = Json::array();
-    for (const wii::ValidationRow& r : rows) j["rows"].push_back(json_of(r));
+    for (const wii::ValidationRow& r : rows) j["rows"].push_back(row_json(r));
     std::printf("%s\n", json_text(j).c_str());
   } else {
     std::printf("%s", (o.markdown ? wii::markdown_of(rows) : wii::table_of(rows)).c_str());

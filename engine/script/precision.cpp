@@ -12,7 +12,6 @@
 namespace verisim::script {
 namespace {
 
-using tradeoff::Bounds;
 using tradeoff::Row;
 using tradeoff::Table;
 
@@ -26,8 +25,8 @@ bool is_same(const Json& a, const Json& b) {
   return set_text(a) == set_text(b);
 }
 
-Bounds bounds_of(const PrecisionRequest& request, tradeoff::Kind& by) {
-  Bounds bounds;
+tradeoff::Bounds bounds_of(const PrecisionRequest& request, tradeoff::Kind& by) {
+  tradeoff::Bounds bounds;
   if (request.by) by = tradeoff::kind_named("by", *request.by);
   if (request.budget) bounds.budget_us = tradeoff::budget_from("budget", *request.budget);
   if (request.error) {
@@ -88,7 +87,7 @@ std::string other_trial(const Table& table, const Json& parameters, const Precis
 }
 
 std::vector<std::string> notices_of(const Table& table, const PrecisionRequest& request, const std::string& other,
-                                    const Bounds& bounds, tradeoff::Kind by) {
+                                    const tradeoff::Bounds& bounds, tradeoff::Kind by) {
   std::vector<std::string> notices;
   if (!other.empty())
     notices.push_back(
@@ -108,7 +107,7 @@ std::vector<std::string> notices_of(const Table& table, const PrecisionRequest& 
 
 PrecisionChoice choose_precision(const PrecisionRequest& request, const std::string& table_text) {
   tradeoff::Kind by = tradeoff::Kind::force;
-  const Bounds bounds = bounds_of(request, by);
+  const tradeoff::Bounds bounds = bounds_of(request, by);
   Table table = tradeoff::table_from(request.table, table_text);
   const Json parameters = parse_json(request.parameters_json);
   check_dials(table, parameters, request);
