@@ -102,7 +102,8 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   }
   Candidate best;
   Candidate strongest;
-  best.gap_ahead = kOutOfReach;
+  Candidate beside;  // the closest place is not on the face; of a hollow one others may be that are hardly farther
+  best.gap_ahead = beside.gap_ahead = kOutOfReach;
   strongest.weight = 0;
   while (true) {
     const auto next = std::min_element(remaining.begin(), remaining.end());
@@ -112,14 +113,23 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     c.group = begin;
     c.sample = begin + static_cast<std::uint32_t>(next - remaining.begin());
     *next = now[c.sample - begin] = kOutOfReach;
-    if (!evaluate_segment(placed, curve, count, face, c) || is_passed_by(placed, curve, c)) continue;
+    if (!evaluate_segment(placed, curve, count, face, c)) {
+      if (beside.gap_ahead == kOutOfReach && c.gap < m.motion.margin && c.gap > -m.base.options.spacing) beside = c;
+      continue;
+    }
+    if (is_passed_by(placed, curve, c)) continue;
     if (c.gap_ahead < best.gap_ahead) {
       best = c;
       ask_beyond_the_end(placed, best, remaining);
     }
     if (c.gap_ahead < 0 && c.weight > strongest.weight) strongest = c;
   }
-  if (best.gap_ahead == kOutOfReach) return;
+  const bool is_corner = placed.feature->half_width == 0;
+  const bool may_conform = placed.feature->own_face != kNoFace || is_corner;
+  if (best.gap_ahead == kOutOfReach) {
+    if (may_conform && beside.gap_ahead != kOutOfReach) add_conforming(placed, beside, count, face);
+    return;
+  }
   while (true) {
     const auto next = std::min_element(now.begin(), now.end());
     if (!(*next < -depth_max_ - m.motion.thresholds.coincident)) break;
@@ -128,9 +138,8 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     *next = kOutOfReach;
     (void)evaluate_segment(placed, curve, count, face, c);  // counts its depth
   }
-  const bool is_corner = placed.feature->half_width == 0;
   add_along(placed, curve, best, count, face);
-  if (placed.feature->own_face != kNoFace || is_corner) add_conforming(placed, best, count, face);
+  if (may_conform) add_conforming(placed, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
     add_face_row(placed, strongest, count, face);

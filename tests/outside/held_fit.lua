@@ -11,6 +11,13 @@ local pin = Solid.cylinder{radius = r, height = 0.04}
 local kinds = {  -- the seat, the body, and how high it begins
   post = function() return hole(0.01), pin, 0.0105 end,
   through = function() return hole(0.06), pin, 0 end,
+  socket = function()
+    return Solid.box{0.06, 0.06, 0.03}:translate{0, 0, -0.015} - Solid.sphere{radius = hollow}, Solid.sphere{radius = r}, 0.0005
+  end,
+  ring = function()
+    return Solid.box{0.08, 0.08, 0.02}:translate{0, 0, -0.01} - Solid.torus{ringRadius = 0.02, radius = 0.006 + p.c},
+      Solid.torus{ringRadius = 0.02, radius = 0.006}, 0.0005
+  end,
   cap = function()
     return pin, Solid.cylinder{radius = 2 * r, height = 0.03}:translate{0, 0, 0.01}
       - Solid.cylinder{radius = hollow, height = 0.04}:translate{0, 0, -0.005}, 0.0055
