@@ -8,29 +8,47 @@ namespace {
 
 constexpr std::array<double, 5> kLeans = {0.02, 0.05, 0.13, 0.34, 0.86};
 constexpr int kSides = 8;
+/// Cosine and sine of an angle.
+struct Turn {
+  double c, s;
+};
+
+/// Of all angles once: a group asks for 20 of them in every step.
+template <std::size_t N>
+std::array<Turn, N> turns_of(const std::array<double, N>& angles) {
+  std::array<Turn, N> turns;
+  for (std::size_t i = 0; i < N; ++i) turns[i] = {pinned::cos(angles[i]), pinned::sin(angles[i])};
+  return turns;
+}
+
+const auto kTurnsAbout = turns_of(kTurns);
+const auto kLeansOut = turns_of(kLeans);
+const auto kSidesRound = [] {
+  std::array<double, kSides> angles;
+  for (int i = 0; i < kSides; ++i) angles[static_cast<std::size_t>(i)] = pinned::kFullTurn * i / kSides;
+  return turns_of(angles);
+}();
 static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
 static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
 
 /// Normals that turn with the closest one about an axis.
-void turn_about(const Vector3d& axis, const Vector3d& normal, std::span<const double> turns, ConformingNormals& found) {
+void turn_about(const Vector3d& axis, const Vector3d& normal, std::span<const Turn> turns, ConformingNormals& found) {
   const Vector3d along = normal.dot(axis) * axis;
   const Vector3d across = normal - along;
   const Vector3d side = axis.cross(across);
-  for (const double turn : turns)
+  for (const Turn& turn : turns)
     for (const double sense : {-1.0, 1.0})
-      found.normals[found.count++] =
-          (along + pinned::cos(turn) * across + sense * pinned::sin(turn) * side).normalized();
+      found.normals[found.count++] = (along + turn.c * across + sense * turn.s * side).normalized();
 }
 
 /// Normals on circles about the closest one.
 void lean_to_all_sides(const Vector3d& normal, ConformingNormals& found) {
   const Vector3d first = normal.unitOrthogonal();
   const Vector3d second = normal.cross(first);
-  for (const double lean : kLeans) {
-    for (int i = 0; i < kSides; ++i) {
-      const double turn = pinned::kFullTurn * i / kSides;
-      const Vector3d side = pinned::cos(turn) * first + pinned::sin(turn) * second;
-      found.normals[found.count++] = pinned::cos(lean) * normal + pinned::sin(lean) * side;
+  for (const Turn& lean : kLeansOut) {
+    for (const Turn& turn : kSidesRound) {
+      const Vector3d side = turn.c * first + turn.s * second;
+      found.normals[found.count++] = lean.c * normal + lean.s * side;
     }
   }
 }
@@ -52,7 +70,7 @@ ConformingNormals conforming_normals(const AnalyticSurface& surface, const Vecto
     case SurfaceKind::cone:
       if (meridian.kind == SurfaceKind::cone) found.pivot += meridian.apex() * axis;
       found.radius = across.norm();
-      turn_about(axis, at.normal, kTurns, found);
+      turn_about(axis, at.normal, kTurnsAbout, found);
       break;
     case SurfaceKind::sphere:
       found.radius = arm.norm();
@@ -64,7 +82,7 @@ ConformingNormals conforming_normals(const AnalyticSurface& surface, const Vecto
       found.pivot += meridian.ring / rho * across;
       found.radius = (p - found.pivot).norm();
       // A ring lies on many places of a tube at once: with the first three its held force has 0.1 mN rms, else none.
-      turn_about(axis.cross(across) / rho, at.normal, std::span(kTurns).subspan(3), found);
+      turn_about(axis.cross(across) / rho, at.normal, std::span(kTurnsAbout).subspan(3), found);
       break;
     }
   }
