@@ -47,9 +47,9 @@ Head head_of(const std::string& key_hash, std::string_view content) {
 }
 
 struct Entry {
-  fs::file_time_type used;
-  std::uint64_t size;
-  fs::path path;
+  std::pair<time_t, long> used;  ///< s, ns
+  std::uint64_t size;            ///< bytes
+  std::string name;
 };
 
 /// None if the folder cannot be read. What killed processes left counts too.
@@ -57,9 +57,10 @@ std::vector<Entry> entries_in(const std::string& folder) {
   std::vector<Entry> entries;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    std::error_code gone;
-    const Entry one{entry.last_write_time(gone), entry.file_size(gone), entry.path()};
-    if (!gone && one.path.filename().string().find(kSuffix) != std::string::npos) entries.push_back(one);
+    const std::string name = entry.path().filename().string();
+    struct stat facts {};
+    if (name.find(kSuffix) == std::string::npos || ::stat(entry.path().c_str(), &facts) != 0) continue;
+    entries.push_back({{facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec}, static_cast<std::uint64_t>(facts.st_size), name});
   }
   return entries;
 }
@@ -116,14 +117,14 @@ void PreparedStore::keep(std::string_view kind, std::string_view key, std::strin
   std::error_code error;
   fs::create_directories(fs::path(folder_).parent_path(), error);
   if (::mkdir(folder_.c_str(), 0700) != 0 && errno != EEXIST) return;
-  make_room(content.size());
   const std::string key_hash = sha256(sha256(key) + version_);
+  ArchiveWriter head;
+  head(head_of(key_hash, content));
+  make_room(head.bytes.size() + content.size());
   const std::string path = path_of(kind, key_hash);
   const std::string part = path + fmt::format(".{}.{}", ::getpid(), kept_);
   const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (descriptor < 0) return;
-  ArchiveWriter head;
-  head(head_of(key_hash, content));
   bool done = write_whole(descriptor, head.bytes) && write_whole(descriptor, content);
   done = ::close(descriptor) == 0 && done;
   done = done && std::rename(part.c_str(), path.c_str()) == 0;
@@ -140,17 +141,21 @@ PreparedStore::Size PreparedStore::size_of(const std::string& folder) {
   return size;
 }
 
-/// Removes what was used longest ago until `bytes` more fit; and what killed processes left, when it comes to that.
-void PreparedStore::make_room(std::uint64_t bytes) const {
+/// Removes what was used longest ago until `bytes` more fit; and what killed processes left, when it comes to that. The
+/// folder is looked through once, and again when what was there then and is kept since may be too much.
+void PreparedStore::make_room(std::uint64_t bytes) {
+  if (bytes_there_) *bytes_there_ += bytes;
+  if (bytes_there_ && *bytes_there_ <= bytes_max_) return;
   std::vector<Entry> entries = entries_in(folder_);
   std::uint64_t all = bytes;
   for (const Entry& entry : entries) all += entry.size;
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+  if (all > bytes_max_)
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const Entry& entry : entries) {
-    if (all <= bytes_max_) return;
-    std::error_code gone;
-    if (fs::remove(entry.path, gone)) all -= entry.size;
+    if (all <= bytes_max_) break;
+    if (::unlink((folder_ + "/" + entry.name).c_str()) == 0) all -= entry.size;
   }
+  bytes_there_ = all;
 }
 
 }  // namespace verisim

@@ -5,7 +5,8 @@
 // version. It is checked when it is read (length, key, XXH3-128 of its content). One that is damaged counts as absent,
 // is counted, and is written again. Files are written under another name and renamed, so any number of processes may
 // share a folder; of two that prepare the same one wins, with the same bytes. When the folder has grown beyond its
-// limit, the entries that were used longest ago go.
+// limit, the entries that were used longest ago go; of several processes each knows what it keeps itself, so the limit
+// may be passed by what the others keep meanwhile.
 #pragma once
 
 #include <cstdint>
@@ -44,11 +45,12 @@ class PreparedStore {
 
  private:
   [[nodiscard]] std::string path_of(std::string_view kind, const std::string& key_hash) const;
-  void make_room(std::uint64_t bytes) const;
+  void make_room(std::uint64_t bytes);
 
   std::string folder_;
   std::string version_;
   std::uint64_t bytes_max_;
+  std::optional<std::uint64_t> bytes_there_;  ///< when the folder was last looked through, and kept since
   std::size_t asked_ = 0, found_ = 0, kept_ = 0, damaged_ = 0;
 };
 

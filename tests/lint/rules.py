@@ -110,7 +110,6 @@ MAY_READ_THE_CLOCK = {
     "engine/reproduce/r5_blending.cpp": "times a solution of the comparator",
     "engine/wii/validate.cpp": "times a tracker's update",
     "engine/record/recorder.cpp": "waits for the disk",
-    "engine/record/prepared_store.cpp": "which entries were used longest ago",
     "engine/geometry/cad_client.cpp": "ends a child process that takes too long",
     "engine/batch/workers.cpp": "ends a run that takes too long, and tells how long each took",
     "engine/cli/doctor.cpp": "measures the clock itself",

@@ -136,6 +136,34 @@ TEST_F(Store, LetsGoOfWhatWasUsedLongestAgo) {
   EXPECT_FALSE(small.find("large", "key")) << "more than a quarter";
 }
 
+TEST_F(Store, OfTwoThatKeepAtOnceEachKeepsTheLimitButForWhatTheOtherKeeps) {
+  const std::uint64_t limit = 20'000;
+  PreparedStore first(folder_.file("store"), "1", limit), second(folder_.file("store"), "1", limit);
+  const std::string content(1000, 'x');
+  for (int i = 0; i < 200; ++i) {
+    (i % 3 == 0 ? first : second).keep("parts", std::to_string(i), content);
+    EXPECT_LE(PreparedStore::size_of(folder_.file("store")).bytes, 2 * limit) << i;
+  }
+  PreparedStore third(folder_.file("store"), "1", limit);
+  third.keep("parts", "last", content);
+  EXPECT_LE(PreparedStore::size_of(folder_.file("store")).bytes, limit + 1000);
+}
+
+// What one process keeps is found by counting, not by looking through the folder each time: files that another process
+// adds are not seen until the limit may be passed.
+TEST_F(Store, IsLookedThroughOnceWhileItHasRoom) {
+  PreparedStore mine(folder_.file("store"), "1", 100'000);
+  mine.keep("parts", "first", "content");
+  const fs::path other = folder_.path() / "store" / "parts-other.prepared";
+  write(other, std::string(99'000, 'x'));
+  fs::last_write_time(other, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const std::string content(2000, 'x');
+  for (int i = 0; i < 40; ++i) mine.keep("parts", std::to_string(i), content);
+  EXPECT_TRUE(fs::exists(other));
+  for (int i = 40; i < 60; ++i) mine.keep("parts", std::to_string(i), content);
+  EXPECT_FALSE(fs::exists(other));
+}
+
 // Readers and writers of one folder at once, some of them killed: what is found is whole.
 TEST_F(Store, IsSafeBetweenProcesses) {
   constexpr int kKeys = 20;
