@@ -142,18 +142,22 @@ PreparedStore::Size PreparedStore::size_of(const std::string& folder) {
 }
 
 /// Removes what was used longest ago until `bytes` more fit; and what killed processes left, when it comes to that. The
-/// folder is looked through once, and again when what was there then and is kept since may be too much.
+/// folder is looked through once, and again when what was there then and is kept since may be too much: a sixteenth of
+/// the limit is made free at a time.
 void PreparedStore::make_room(std::uint64_t bytes) {
-  if (bytes_there_) *bytes_there_ += bytes;
-  if (bytes_there_ && *bytes_there_ <= bytes_max_) return;
+  if (bytes_there_ && *bytes_there_ + bytes <= bytes_max_) {
+    *bytes_there_ += bytes;
+    return;
+  }
   std::vector<Entry> entries = entries_in(folder_);
   std::uint64_t all = bytes;
   for (const Entry& entry : entries) all += entry.size;
-  if (all > bytes_max_)
+  if (all > bytes_max_) {
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
-  for (const Entry& entry : entries) {
-    if (all <= bytes_max_) break;
-    if (::unlink((folder_ + "/" + entry.name).c_str()) == 0) all -= entry.size;
+    for (const Entry& entry : entries) {
+      if (all <= bytes_max_ - bytes_max_ / 16) break;
+      if (::unlink((folder_ + "/" + entry.name).c_str()) == 0) all -= entry.size;
+    }
   }
   bytes_there_ = all;
 }
