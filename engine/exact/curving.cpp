@@ -128,8 +128,6 @@ double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidat
 }
 
 double passing_of_edges(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, const ExactEdge& edge) {
-  constexpr double kOneFace = 0.02;  // of edge_fraction: the normal is that of one face, along which the curve runs
-  if (c.edge_fraction > kOneFace) return 0;
   const auto gap_at = [&](const Vector3d& p) {
     return std::max(pair.base.faces[edge.faces[0]].surface->at(p).distance,
                     pair.base.faces[edge.faces[1]].surface->at(p).distance);
