@@ -6,8 +6,11 @@
 namespace verisim::exact {
 namespace {
 
-constexpr std::array<double, 5> kLeans = {0.02, 0.05, 0.13, 0.34, 0.86};
-constexpr int kSides = 8;
+constexpr std::array<double, 5> kLeans = {0.02, 0.05, 0.13, 0.34, 0.86};  // rad, from the closest normal
+constexpr int kSides = 8;                                                 // of a lean
+static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
+static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
+
 /// Cosine and sine of an angle.
 struct Turn {
   double c, s;
@@ -28,8 +31,6 @@ const auto kSidesRound = [] {
   for (int i = 0; i < kSides; ++i) angles[static_cast<std::size_t>(i)] = pinned::kFullTurn * i / kSides;
   return turns_of(angles);
 }();
-static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
-static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
 
 /// Normals that turn with the closest one about an axis.
 void turn_about(const Vector3d& axis, const Vector3d& normal, std::span<const Turn> turns, ConformingNormals& found) {

@@ -223,10 +223,10 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
   constexpr double kDeep = 1e-4;  // m: deeper than motions lead
   if (!placed.is_arc() || !is_between(placed, c) || c.gap < -kDeep) return false;
   const RelativeMotion& motion = pair_.motion;
-  const double clearance = clearance_along(placed, curve, c);
-  if (!(clearance > 0 && slide(c.p) < motion.thresholds.conforms * clearance)) return false;
   Measure here{};
   with_measure(curve, [&](auto&& measure_at) { here = measure_at(c.place.c, c.place.s); });
+  const double clearance = clearance_along(placed, here, c);
+  if (!(clearance > 0 && slide(c.p) < motion.thresholds.conforms * clearance)) return false;
   const double length = placed.tangent(c.place).norm();
   const Vector3d axis = placed.x.cross(placed.y).normalized();  // turns about it move the curve along itself
   const auto tilt = [&](const Vector3d& omega) { return motion.dt * (omega - omega.dot(axis) * axis).norm(); };
@@ -240,9 +240,7 @@ bool Search::is_passed_by(const PlacedFeature& placed, const CurveFromSurface& c
 
 /// How far it moves a body until an arc's closest place has turned by a radian, where it rolls round within a hollow
 /// face, or as a hollow one round a face [m]; else below 0.
-double Search::clearance_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const {
-  Measure here{};
-  with_measure(curve, [&](auto&& measure_at) { here = measure_at(c.place.c, c.place.s); });
+double Search::clearance_along(const PlacedFeature& placed, const Measure& here, const Candidate& c) {
   const double square = placed.tangent(c.place).squaredNorm();
   const double bend = here.bend / square;  // 1/m, of the gap along the curve
   const double of_curve = c.at.normal.dot(placed.origin - c.p) / square;
@@ -263,12 +261,12 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
                        std::uint32_t count, std::uint32_t face) {
   constexpr double kFlush = 1e-7;  // m: less is no clearance, and all of the curve touches
   if (!placed.is_arc() || placed.feature->own_face != kNoFace) return;
-  const double clearance = clearance_along(placed, curve, best);
+  Measure here{};
+  with_measure(curve, [&](auto&& measure_at) { here = measure_at(best.place.c, best.place.s); });
+  const double clearance = clearance_along(placed, here, best);
   if (!(clearance > kFlush && slide(best.p) > pair_.motion.thresholds.conforms * clearance)) return;
   if (pair_.moved(best.p, pair_.motion.last_twist).norm() > clearance) return;
   const double half = placed.feature->half_width;
-  Measure here{};
-  with_measure(curve, [&](auto&& measure_at) { here = measure_at(best.place.c, best.place.s); });
   if (std::abs(here.slope) > half * here.bend) return;  // the closest place is that of another segment
   constexpr std::size_t kNear = 6;                      // of the turns: segments' ends are farther
   for (const double turn : std::span(kTurns).first(kNear)) {

@@ -53,8 +53,7 @@ class Search {
   [[nodiscard]] bool is_near(const PlacedFeature& placed, std::uint32_t count, Candidate& c) const;
   [[nodiscard]] bool is_between(const PlacedFeature& placed, const Candidate& c) const;
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
-  [[nodiscard]] double clearance_along(const PlacedFeature& placed, const CurveFromSurface& curve,
-                                       const Candidate& c) const;
+  [[nodiscard]] static double clearance_along(const PlacedFeature& placed, const Measure& here, const Candidate& c);
   [[nodiscard]] double slide(const Vector3d& p) const;
   void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best, std::uint32_t count,
                  std::uint32_t face);

@@ -56,7 +56,8 @@ class ConformingTest(SceneTest):
     def test_a_hand_holds_it_still_to_the_side_and_askew(self):
         # Its rims run round what is hardly smaller: one place of each went round by 0.1 rad a step and made 36 mN rms.
         # A ball in its socket and a ring in its groove without clearance: where the closest place was beyond the mouth, the
-        # places inside it gave no row, and the whole force came every other step.
+        # places inside it gave no row, and the whole force came every other step. Not among them, for they are above 1 mN
+        # still: sockets of 0.05 mm at 2 ms (2.5 mN), rings with clearance (8 mN), or askew by more than 0.03 rad (0.4 N).
         kinds = {"post": (0, 1e-6, 1e-5, 5e-5), "through": (0, 1e-6, 1e-5, 5e-5), "cap": (0, 1e-6, 1e-5, 5e-5),
                  "socket": (0, 1e-6, 1e-5), "ring": (0,)}
         for kind, clearances in kinds.items():
@@ -72,7 +73,7 @@ class ConformingTest(SceneTest):
                     late = force[-int(0.5 / how["timestep"]):]
                     self.assertGreater(np.linalg.norm(late.mean(axis=0)), 0.01)
                     jitter = np.sqrt(((late - late.mean(axis=0)) ** 2).sum(axis=1).mean())
-                    self.assertLessEqual(jitter, {("socket", 12): 1.1e-3}.get((kind, seed), 1e-3))  # that one: 1.05 mN
+                    self.assertLessEqual(jitter, 1e-3)
 
     def test_what_fits_closely_rests(self):
         clearances = (0, 1e-6, 1e-5, 3e-5) if LONG else (0, 1e-5)
