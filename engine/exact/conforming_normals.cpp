@@ -82,8 +82,8 @@ ConformingNormals conforming_normals(const AnalyticSurface& surface, const Vecto
       if (rho == 0) return found;
       found.pivot += meridian.ring / rho * across;
       found.radius = (p - found.pivot).norm();
-      // A ring lies on many places of a tube at once. With the first three it takes 15 to 20 % longer, and of 16 held rings
-      // 3 go to and fro by more than 1 mN (4.5 mN at most), without them 5 (7.7 mN).
+      // A ring lies on many places of a tube at once. With the first three it takes 15 to 20 % longer, and of 16 held
+      // rings 3 go to and fro by more than 1 mN (4.5 mN at most), without them 5 (7.7 mN).
       turn_about(axis.cross(across) / rho, at.normal, std::span(kTurnsAbout).subspan(3), found);
       break;
     }
