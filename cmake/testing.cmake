@@ -4,7 +4,10 @@
 # namespace of its own name, so that files do not see each other. ALONE: a program of its own, for what replaces malloc or
 # kills itself.
 find_package(GTest REQUIRED)
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
+# Looked for once, here: each takes a second.
+set(Python_EXECUTABLE /usr/bin/python3)  # Debian's, whose headers, NumPy and h5py are Debian's too
+find_package(Python REQUIRED COMPONENTS Interpreter OPTIONAL_COMPONENTS Development.Module)
+find_package(HDF5 REQUIRED COMPONENTS C)
 set(VERISIM_SHARED_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "Recordings and models of other people; tests that need them say when they are absent")
 set(VERISIM_SHARED_REFERENCE "${PROJECT_SOURCE_DIR}/../shared/reference" CACHE PATH "Recorded facts of published pieces")
 configure_file(${PROJECT_SOURCE_DIR}/tests/support/paths.cpp.in ${CMAKE_BINARY_DIR}/generated/paths.cpp @ONLY)
@@ -18,7 +21,7 @@ function(verisim_test_program target)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
-    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list})
+    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list})
   file(WRITE ${list}.include "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n"
                              "  add_test(${target}_NOT_BUILT ${target}_NOT_BUILT)\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${list}.include)
