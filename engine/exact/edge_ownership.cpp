@@ -39,6 +39,7 @@ bool is_behind(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, dou
 
 /// True if a point of a face's surface lies within the face.
 bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot) {
+  if (body.faces[face].trim->is_whole()) return true;
   const Trim::Answer answer = body.faces[face].trim->find(*body.faces[face].surface, foot);
   if (answer.where != Trim::Where::border) return answer.where == Trim::Where::inside;
   for (const std::uint32_t e : answer.edges) {
@@ -132,6 +133,22 @@ bool comes_through_another(const BodyPair& pair, const Candidate& c, std::uint32
   for (std::uint32_t other = 0; other < pair.base.faces.size(); ++other)
     if (other != face && pair.base.faces[other].surface && comes_through(pair, c, other, foot)) return true;
   return false;
+}
+
+/// True if a ball's contact point lies on the face that the ball belongs to, to a tenth of what counts as on it,
+/// whatever the step: its normal is across the curve, to sigma. The point, r sigma along the curve, is then no farther
+/// from a tube of radius r round a circle of radius R than r sigma^2 R / (R - r). A cone's ball touches at a slope.
+bool is_across(const PlacedFeature& placed, const Candidate& c, double near) {
+  const Feature& feature = *placed.feature;
+  if (feature.half_width == 0) return true;  // the middle of a ball
+  if (feature.radius_slope != 0) return false;
+  const double r = feature.radius;
+  const Vector3d tangent = placed.tangent(c.place);
+  const double along = c.at.normal.dot(tangent);
+  const double R2 = tangent.squaredNorm();
+  if (!placed.is_arc()) return r * along * along <= near * R2;
+  const double R = std::sqrt(R2);
+  return r * along * along <= near * R * (R - r);
 }
 
 /// How far a ball's contact point lies from the face that the ball belongs to [m]: the least within the step, for a
@@ -280,8 +297,12 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     if (c.gap < -kThinnest && comes_through_another(pair, touching, face, foot)) return false;
     const Vector3d contact_point = pair.motion.now.R.transpose() * (touching.p - pair.motion.now.p);
     const SearchThresholds& fade = pair.motion.thresholds;
-    const double off = off_own_face(pair, placed, *pair.base.faces[face].surface, c);
-    c.weight = std::min(1.0, (fade.own_face_none - off) / (fade.own_face_none - fade.own_face_full));
+    if (is_across(placed, c, 0.1 * fade.own_face_full)) {
+      c.weight = 1;
+    } else {
+      const double off = off_own_face(pair, placed, *pair.base.faces[face].surface, c);
+      c.weight = std::min(1.0, (fade.own_face_none - off) / (fade.own_face_none - fade.own_face_full));
+    }
     return c.weight > 0 && is_on_face(pair.base, face, foot) && is_on_face(pair.mover, feature.own_face, contact_point);
   }
   const Trim::Answer answer = pair.base.faces[face].trim->find(*pair.base.faces[face].surface, foot);

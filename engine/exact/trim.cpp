@@ -287,6 +287,8 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
     edges_.push_back(edge);
   }
   for (std::size_t i = 0; i < cell_count; ++i) first_edge_[i + 1] += first_edge_[i];
+  const bool is_closed = a_.around && (b_.around || (has_poles && low[1] <= -1 && high[1] >= 1));
+  is_whole_ = is_closed && std::all_of(cells_.begin(), cells_.end(), [](Where w) { return w == Where::inside; });
 }
 
 Trim::Answer Trim::find(const AnalyticSurface& surface, const Vector3d& foot) const {

@@ -54,10 +54,13 @@ class Trim {
   /// or border. 0 of other surfaces.
   [[nodiscard]] double reach_outside() const { return a_.around || b_.around ? 0 : std::min(a_.cell, b_.cell); }
 
+  /// Is every point of the surface inside? Of a ball or a ring with no border.
+  [[nodiscard]] bool is_whole() const { return is_whole_; }
+
   /// For engine/base/archive.hpp.
   static void fields(auto& archive, Trim& self) {
     for (auto* axis : {&self.a_, &self.b_}) archive(axis->from, axis->cell, axis->per_cell, axis->count, axis->around);
-    archive(self.cells_, self.first_edge_, self.edges_);
+    archive(self.is_whole_, self.cells_, self.first_edge_, self.edges_);
   }
 
  private:
@@ -77,6 +80,7 @@ class Trim {
   [[nodiscard]] int cell_at(const std::array<double, 2>& chart) const;
 
   Axis a_, b_;
+  bool is_whole_ = false;
   std::vector<Where> cells_;
   std::vector<std::uint32_t> first_edge_;  ///< (cells + 1): where a cell's edges begin
   std::vector<std::uint32_t> edges_;
