@@ -1,15 +1,20 @@
 #include "engine/exact/conforming_normals.hpp"
 
+#include <span>
+
 #include "engine/base/error.hpp"
 #include "engine/base/pinned_math.hpp"
 
 namespace verisim::exact {
 namespace {
 
-constexpr std::array<double, 5> kLeans = {0.02, 0.05, 0.13, 0.34, 0.86};  // rad, from the closest normal
-constexpr int kSides = 8;                                                 // of a lean
+constexpr std::array<double, 7> kLeans = {0.008, 0.016, 0.032, 0.064,
+                                          0.13,  0.34,  0.86};  // rad, from the closest normal
+constexpr std::size_t kSides = 8;                               // of a lean
 static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
 static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
+
+constexpr std::size_t kFirstOfRing = 1, kWide = 6;  // of kTurns
 
 /// Cosine and sine of an angle.
 struct Turn {
@@ -27,8 +32,9 @@ std::array<Turn, N> turns_of(const std::array<double, N>& angles) {
 const auto kTurnsAbout = turns_of(kTurns);
 const auto kLeansOut = turns_of(kLeans);
 const auto kSidesRound = [] {
-  std::array<double, kSides> angles;
-  for (int i = 0; i < kSides; ++i) angles[static_cast<std::size_t>(i)] = pinned::kFullTurn * i / kSides;
+  std::array<double, 2 * kSides> angles;
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    angles[i] = pinned::kFullTurn * static_cast<double>(i) / static_cast<double>(angles.size());
   return turns_of(angles);
 }();
 
@@ -46,47 +52,55 @@ void turn_about(const Vector3d& axis, const Vector3d& normal, std::span<const Tu
 void lean_to_all_sides(const Vector3d& normal, ConformingNormals& found) {
   const Vector3d first = normal.unitOrthogonal();
   const Vector3d second = normal.cross(first);
+  std::size_t begin = 0;  // every other circle is turned by half a side
   for (const Turn& lean : kLeansOut) {
-    for (const Turn& turn : kSidesRound) {
-      const Vector3d side = turn.c * first + turn.s * second;
+    for (std::size_t i = begin; i < kSidesRound.size(); i += 2) {
+      const Vector3d side = kSidesRound[i].c * first + kSidesRound[i].s * second;
       found.normals[found.count++] = lean.c * normal + lean.s * side;
     }
+    begin = 1 - begin;
   }
 }
 
 }  // namespace
 
-ConformingNormals conforming_normals(const AnalyticSurface& surface, const Vector3d& p, const SurfaceAt& at) {
-  ConformingNormals found;
+std::optional<HollowPlace> hollow_place(const AnalyticSurface& surface, const Vector3d& p) {
   const Meridian& meridian = surface.meridian();
-  if (surface.side() > 0 || meridian.kind == SurfaceKind::plane) return found;
-  const Vector3d& axis = surface.axis();
-  found.pivot = surface.point();
+  if (surface.side() > 0 || meridian.kind == SurfaceKind::plane) return std::nullopt;
+  HollowPlace place{.pivot = surface.point(), .axis = surface.axis()};
   const Vector3d arm = p - surface.point();
-  const Vector3d across = arm - arm.dot(axis) * axis;
+  const Vector3d across = arm - arm.dot(place.axis) * place.axis;
+  const double rho = across.norm();
+  place.radius = rho;
   switch (meridian.kind) {
     case SurfaceKind::plane:
-      break;
     case SurfaceKind::cylinder:
+      break;
     case SurfaceKind::cone:
-      if (meridian.kind == SurfaceKind::cone) found.pivot += meridian.apex() * axis;
-      found.radius = across.norm();
-      turn_about(axis, at.normal, kTurnsAbout, found);
+      place.pivot += meridian.apex() * place.axis;
       break;
     case SurfaceKind::sphere:
-      found.radius = arm.norm();
-      lean_to_all_sides(at.normal, found);
+      place.radius = arm.norm();
+      place.is_in_ball = true;
       break;
-    case SurfaceKind::torus: {
-      const double rho = across.norm();
-      if (rho == 0) return found;
-      found.pivot += meridian.ring / rho * across;
-      found.radius = (p - found.pivot).norm();
-      // A ring lies on many places of a tube at once. With the first three it takes 15 to 20 % longer, and of 16 held
-      // rings 3 go to and fro by more than 1 mN (4.5 mN at most), without them 5 (7.7 mN).
-      turn_about(axis.cross(across) / rho, at.normal, std::span(kTurnsAbout).subspan(3), found);
+    case SurfaceKind::torus:
+      if (rho == 0) return std::nullopt;
+      place.pivot += meridian.ring / rho * across;
+      place.radius = (p - place.pivot).norm();
+      place.axis = place.axis.cross(across) / rho;
+      place.is_in_tube = true;
       break;
-    }
+  }
+  return place;
+}
+
+ConformingNormals conforming_normals(const HollowPlace& place, const Vector3d& normal, bool touches) {
+  ConformingNormals found;
+  if (place.is_in_ball) {
+    lean_to_all_sides(normal, found);
+  } else {
+    const std::size_t first = !place.is_in_tube ? 0 : touches ? kFirstOfRing : kWide;
+    turn_about(place.axis, normal, std::span(kTurnsAbout).subspan(first), found);
   }
   return found;
 }

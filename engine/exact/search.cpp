@@ -127,7 +127,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
   const bool is_corner = placed.feature->half_width == 0;
   const bool may_conform = placed.feature->own_face != kNoFace || is_corner;
   if (best.gap_ahead == kOutOfReach) {
-    if (may_conform && beside.gap_ahead != kOutOfReach) add_conforming(placed, beside, count, face);
+    if (may_conform && beside.gap_ahead != kOutOfReach) add_conforming(placed, curve, beside, count, face);
     return;
   }
   while (true) {
@@ -139,7 +139,7 @@ void Search::reduce_group(const PlacedFeature& placed, const CurveFromSurface& c
     (void)evaluate_segment(placed, curve, count, face, c);  // counts its depth
   }
   add_along(placed, curve, best, count, face);
-  if (may_conform) add_conforming(placed, best, count, face);
+  if (may_conform) add_conforming(placed, curve, best, count, face);
   if (best.weight < m.motion.thresholds.weight_enough && strongest.weight > best.weight) {
     strongest.weight -= best.weight;
     add_face_row(placed, strongest, count, face);
@@ -266,17 +266,43 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   const double clearance = clearance_along(placed, here, best);
   if (!(clearance > kFlush && slide(best.p) > pair_.motion.thresholds.conforms * clearance)) return;
   if (pair_.moved(best.p, pair_.motion.last_twist).norm() > clearance) return;
+  add_beside_closest(placed, curve, best.group, count, face);
+}
+
+/// Adds rows along an arc beside the closest place of a group, as it is now: the candidate, which is closest at the end
+/// of the step without contact, may be that of another segment from step to step.
+void Search::add_beside_closest(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t group,
+                                std::uint32_t count, std::uint32_t face) {
   const double half = placed.feature->half_width;
-  if (std::abs(here.slope) > half * here.bend) return;  // the closest place is that of another segment
-  constexpr std::size_t kNear = 6;                      // of the turns: segments' ends are farther
-  for (const double turn : std::span(kTurns).first(kNear)) {
+  const double to_middle = half * (count - 1);
+  const Place middle = place_at(true, pair_.mover.sample_c[group], pair_.mover.sample_s[group], to_middle);
+  Candidate closest;
+  closest.group = closest.sample = group;
+  closest.place = closest_place(curve, middle.c, middle.s, half * count);
+  closest.place.t += to_middle;
+  add_beside(placed, curve, closest, kTurnsAlong, count, face);
+}
+
+/// Adds rows along an arc beside a place, at these angles. None if the place is the end of its segments and not the
+/// closest, and none where all are as close: a group's ends say that.
+void Search::add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
+                        std::span<const double> turns, std::uint32_t count, std::uint32_t face) {
+  const Feature& feature = *placed.feature;
+  const double half = feature.half_width;
+  Measure here{};
+  with_measure(curve, [&](auto&& measure_at) { here = measure_at(closest.place.c, closest.place.s); });
+  if (!(std::abs(here.slope) <= half * here.bend)) return;
+  if (here.bend * turns.back() * turns.back() < 2 * kSlack) return;
+  for (const double turn : turns) {
     for (const double sense : {-1.0, 1.0}) {
-      const double t = best.place.t + sense * turn;
+      const double t = closest.place.t + sense * turn;  // from the middle of the sample's segment
       const double segments = std::round(t / (2 * half));
-      const double number = static_cast<double>(best.sample) + segments;
-      if (!(number >= placed.feature->begin && number < placed.feature->end)) continue;
+      double number = closest.sample + segments;
+      const double samples = feature.end - feature.begin;
+      if (feature.closed) number -= samples * std::floor((number - feature.begin) / samples);
+      if (!(number >= feature.begin && number < feature.end)) continue;
       Candidate c;
-      c.group = best.group;
+      c.group = closest.group;
       c.sample = static_cast<std::uint32_t>(number);
       c.place = place_at(true, pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], t - 2 * half * segments);
       if (!evaluate_candidate(placed, face, 1, c) || !(c.gap_ahead < kSlack)) continue;
@@ -286,26 +312,32 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
 }
 
 /// Adds the rows of a ball or a corner that may come to other places of a hollow within the step
-/// (conforming_normals.hpp), and of a corner where the motions that are assumed lead it.
-void Search::add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count,
-                            std::uint32_t face) {
+/// (conforming_normals.hpp), of a ring beside its closest place, too, and of a corner where the motions that are
+/// assumed lead it.
+void Search::add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                            std::uint32_t count, std::uint32_t face) {
+  constexpr double kTouches = 0.01;  // of the clearance
   const RelativeMotion& motion = pair_.motion;
   const AnalyticSurface& surface = *pair_.base.faces[face].surface;
-  const ConformingNormals around = conforming_normals(surface, best.p, best.at);
-  if (!(slide(best.p) > motion.thresholds.conforms * around.radius)) return;
+  const std::optional<HollowPlace> in = hollow_place(surface, best.p);
+  if (!in || !(slide(best.p) > motion.thresholds.conforms * in->radius)) return;
   const bool is_corner = placed.feature->own_face == kNoFace;
   const auto add = [&](const Vector3d& normal) {
     Candidate c = best;
     c.normal = normal;
-    c.at = {best.at.distance + (c.normal - best.normal).dot(best.p - around.pivot), c.normal};
+    c.at = {best.at.distance + (c.normal - best.normal).dot(best.p - in->pivot), c.normal};
     c.gap = c.at.distance - placed.feature->radius_at(c.place.c);
     c.weight = 1;
     if (!(c.gap < motion.margin) || !accept_candidate(pair_, placed, face, c)) return;
     if (is_corner) c.weight *= pair_.normal_cone_weight(c.sample, c.normal);
     add_row(placed, c, count, face, 0);
   };
+  const bool touches = best.gap < std::max(kTouches * in->radius, motion.thresholds.coincident);
+  const ConformingNormals around = conforming_normals(*in, best.normal, touches);
   for (std::size_t i = 0; i < around.count; ++i) add(around.normals[i]);
-  if (!is_corner || around.count == 0) return;
+  constexpr std::size_t kFirst = 3;  // of kTurnsAlong
+  if (placed.is_arc()) add_beside(placed, curve, best, std::span(kTurnsAlong).subspan(kFirst), count, face);
+  if (!is_corner) return;
   for (const Placement* there : {&motion.ahead(), &motion.after()})
     add(surface.at(placed_by(*there, *placed.feature).point(best.place)).normal);
 }

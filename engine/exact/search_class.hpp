@@ -57,7 +57,12 @@ class Search {
   [[nodiscard]] double slide(const Vector3d& p) const;
   void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best, std::uint32_t count,
                  std::uint32_t face);
-  void add_conforming(const PlacedFeature& placed, const Candidate& best, std::uint32_t count, std::uint32_t face);
+  void add_beside_closest(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t group,
+                          std::uint32_t count, std::uint32_t face);
+  void add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
+                  std::span<const double> turns, std::uint32_t count, std::uint32_t face);
+  void add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                      std::uint32_t count, std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
   /// `shares`: the group's stiffness with the closest place.
   struct GroupEnd {

@@ -181,6 +181,10 @@ Extent extent_of(const AnalyticSurface& surface, const TriangleMesh& mesh, std::
   return extent;
 }
 
+bool are_all_inside(std::span<const Trim::Where> cells) {
+  return std::all_of(cells.begin(), cells.end(), [](Trim::Where cell) { return cell == Trim::Where::inside; });
+}
+
 }  // namespace
 
 int Trim::Axis::index(double x) const {
@@ -278,7 +282,13 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
     std::sort(passes.begin(), passes.end());
     passes.erase(std::unique(passes.begin(), passes.end()), passes.end());
   }
-  first_edge_.assign(cell_count + 1, 0);
+  name_edges(passes, crossed);
+  is_whole_ = a_.around && (b_.around || (has_poles && low[1] <= -1 && high[1] >= 1)) && are_all_inside(cells_);
+}
+
+void Trim::name_edges(std::span<const std::pair<std::uint32_t, std::uint32_t>> passes,
+                      const std::vector<bool>& crossed) {
+  first_edge_.assign(cells_.size() + 1, 0);
   for (const auto& [at, edge] : passes) {
     Where& cell_is = cells_[at];
     const bool is_out = cell_is == Where::outside || cell_is == Where::beside;
@@ -286,9 +296,7 @@ Trim::Trim(const AnalyticSurface& surface, const TriangleMesh& mesh, std::span<c
     ++first_edge_[at + 1];
     edges_.push_back(edge);
   }
-  for (std::size_t i = 0; i < cell_count; ++i) first_edge_[i + 1] += first_edge_[i];
-  const bool is_closed = a_.around && (b_.around || (has_poles && low[1] <= -1 && high[1] >= 1));
-  is_whole_ = is_closed && std::all_of(cells_.begin(), cells_.end(), [](Where w) { return w == Where::inside; });
+  for (std::size_t i = 0; i < cells_.size(); ++i) first_edge_[i + 1] += first_edge_[i];
 }
 
 Trim::Answer Trim::find(const AnalyticSurface& surface, const Vector3d& foot) const {

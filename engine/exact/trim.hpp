@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/geometry/analytic_surface.hpp"
@@ -77,6 +78,8 @@ class Trim {
     /// rounding, is in both.
     [[nodiscard]] std::array<int, 2> cells_of(double x) const;
   };
+  /// Of cells and edges that pass through them or beside them, ascending; crossed: through them.
+  void name_edges(std::span<const std::pair<std::uint32_t, std::uint32_t>> passes, const std::vector<bool>& crossed);
   [[nodiscard]] int cell_at(const std::array<double, 2>& chart) const;
 
   Axis a_, b_;
