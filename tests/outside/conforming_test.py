@@ -17,8 +17,6 @@ BALL, PIN = 4 / 3 * math.pi * 0.01**3, math.pi * 0.01**2 * 0.04  # m^3
 PLUG = math.pi / 3 * 0.025 * (0.0075**2 + 0.0075 * 0.0125 + 0.0125**2)
 RING = 2 * math.pi**2 * 0.02 * 0.006**2
 VOLUME = {"tube": BALL, "socket": BALL, "cone": BALL, "bowl": BALL, "bore": PIN, "plug": PLUG, "ring": RING}
-# Wanted: 1e-3. From 30 um on a ball in a socket goes to and fro, by 0.07 to 0.4 um in turn, as its rows change [N rms].
-JITTERS = {("socket", 3e-5): 1.2e-3, ("socket", 1e-4): 6.5e-3}
 
 
 class ConformingTest(SceneTest):
@@ -56,10 +54,11 @@ class ConformingTest(SceneTest):
     def test_a_hand_holds_it_still_to_the_side_and_askew(self):
         # Its rims run round what is hardly smaller: one place of each went round by 0.1 rad a step and made 36 mN rms.
         # A ball in its socket and a ring in its groove without clearance: where the closest place was beyond the mouth, the
-        # places inside it gave no row, and the whole force came every other step. Not among them, for they are above 1 mN
-        # still: sockets of 0.05 mm at 2 ms (2.5 mN), rings with clearance (8 mN), or askew by more than 0.03 rad (0.4 N).
+        # places inside it gave no row, and the whole force came every other step. A ball in a socket of 0.05 mm went to and
+        # fro between the planes of its rows (2.6 mN). Not among them, for they are above 1 mN still: rings with clearance
+        # (11 of 100, 19 mN at most), or without it and askew by more than 0.03 rad (0.4 N).
         kinds = {"post": (0, 1e-6, 1e-5, 5e-5), "through": (0, 1e-6, 1e-5, 5e-5), "cap": (0, 1e-6, 1e-5, 5e-5),
-                 "socket": (0, 1e-6, 1e-5), "ring": (0,)}
+                 "socket": (0, 1e-6, 1e-5, 5e-5), "ring": (0,)}
         for kind, clearances in kinds.items():
             for seed in range(24 if LONG else 6):
                 draw = random.Random("{} {}".format(kind, seed))
@@ -95,7 +94,7 @@ class ConformingTest(SceneTest):
                 # 300 N/m of the coupling and 400 N/m of the hand in series over 10 mm.
                 self.assertAlmostEqual(late[:, 2].mean(), 12 / 7, delta=1e-5)
                 jitter = np.sqrt(((late - late.mean(axis=0)) ** 2).sum(axis=1).mean())
-                self.assertLessEqual(jitter, JITTERS.get((wall, clearance), 1e-3))
+                self.assertLessEqual(jitter, 1e-3)
                 x, y, z = pose[-1000:, :3].T
                 depth = {"flat": 0.015 - z, "cone": 0.015 - (0.6 * (z + 0.08 / 3) - 0.8 * np.hypot(x, y)),
                          "tube": np.hypot(y, z) - clearance, "socket": np.sqrt(x**2 + y**2 + z**2) - clearance}[wall]

@@ -45,7 +45,8 @@ class SeamsTest(SceneTest):
             with self.subTest(**settings):
                 del settings["before"]
                 body = self.run_scene("seam.lua", "body", **settings)
-                self.assertAlmostEqual(body.pose[steps - 1, 0] + r, -before, delta=1e-2 * before + 1e-8)
+                braked = 0.5 * 1e-6 * 9.81 * (steps * timestep) ** 2  # by the grip of what lies: at most 31 nm
+                self.assertAlmostEqual(body.pose[steps - 1, 0] + r, -before, delta=1e-2 * before + 1e-8 + braked)
                 self.assertLess(abs(body.twist[-1, 0] / body.twist[0, 0] - 1), 1e-3)
 
     def test_one_table_has_none(self):
