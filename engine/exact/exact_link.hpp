@@ -44,8 +44,9 @@
 //   Hollows         A rim that slides round within a hollow, or a hollow one round a pin, has the row of its closest
 //                   place alone: one beside it would brake. Where the hollow is hardly wider, the closest place passes
 //                   much of it within a step: all of the rim's groups have rows, a ball or a corner has rows all round
-//                   (conforming_normals.hpp), and so has a rim that is held. They have them, too, where their closest
-//                   place is beyond the hollow's mouth: places inside of it may be hardly farther.
+//                   (conforming_normals.hpp), and so have a ring and a rim that is held, beside it along the curve.
+//                   They have them, too, where their closest place is beyond the hollow's mouth: places inside of it
+//                   may be hardly farther.
 //   Own face        A ball that a curve carries touches only where the curve is closest; within the step that may be
 //                   another place than now.
 //   Normal cone     The weight of a row falls from 1 to 0 as its normal leaves the normal cone of the feature by 25

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/length.hpp"
 
 namespace verisim::exact::test::driven_insertion_test {
@@ -9,25 +12,47 @@ namespace {
 
 struct Case {
   double clearance;
-  double peak;     ///< N
-  double overlap;  ///< of the clearance
+  double peak;  ///< N
 };
 
-/// Peak forces: MuJoCo's with stiff contacts and those of ../shared/reference/exact, which agree. Overlaps: of 18
-/// clearances from 10 to 83 um each 1.13 times the one before, 12 stay below 0.0125, and 0.0242 is the most, in the one
-/// frame in which the tilting pin first touches on both sides.
+/// Peak forces: MuJoCo's with stiff contacts and those of ../shared/reference/exact, which agree.
 class DrivenInsertion : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Clearances, DrivenInsertion,
-                         ::testing::ValuesIn(verisim::test::some_of({Case{1e-3, 9.3, 0.0125}, Case{1e-4, 13.3, 0.0125},
-                                                                     Case{2e-5, 13.7, 0.025}, Case{1e-5, 13.7, 0.0125}},
-                                                                    4)));
+                         ::testing::ValuesIn(verisim::test::some_of(
+                             {Case{1e-3, 9.3}, Case{1e-4, 13.3}, Case{2e-5, 13.7}, Case{1e-5, 13.7}}, 4)));
 
-TEST_P(DrivenInsertion, ReachesTheEndWithTheKnownForceAndHardlyOverlaps) {
+TEST_P(DrivenInsertion, ReachesTheEndWithTheKnownForce) {
   const Outcome o = run({.clearance = GetParam().clearance});
   EXPECT_NEAR(o.bottom, -0.12, 2e-5);
   EXPECT_NEAR(o.force_max, GetParam().peak, 0.06);  // given to a tenth of a newton
-  EXPECT_LE(o.overlap_max, GetParam().overlap * GetParam().clearance);
   EXPECT_LE(o.jump_max, 10);  // N: a fifth of what would stop 1 kg at the hand's speed within a frame
+}
+
+// The most is that of one frame, in which the leaning pin first touches on both sides: which clearances it falls on
+// changes with every change of the engine, so that single ones say little.
+TEST(DrivenInsertionAtManyClearances, HardlyOverlaps) {
+  std::vector<double> overlaps;  // of the clearance
+  for (double clearance = 1e-5; clearance < 1e-4; clearance *= 1.13)
+    overlaps.push_back(run({.clearance = clearance}).overlap_max / clearance);
+  std::sort(overlaps.begin(), overlaps.end());
+  EXPECT_LE(overlaps[overlaps.size() / 2], 0.0125);
+  EXPECT_LE(overlaps.back(), 0.025);
+}
+
+// While the hand slowly leans, two rims hold the pin. Where their rows came and went with the segment that was closest,
+// the force went from 4 to 10 N and back every four steps. Wider ones are not held so evenly yet: 2 N at 30 um, 7
+// at 50.
+TEST(DrivenInsertionAtManyClearances, PressesASlowlyLeaningPinEvenly) {
+  for (const double clearance : {1e-5, 1.3e-5, 1.6e-5, 2e-5}) {
+    SCOPED_TRACE(clearance);
+    Vector3d before = Vector3d::Zero();
+    double most = 0;  // N, from step to step
+    (void)run({.clearance = clearance}, [&](const HeldPin& pin, int frame) {
+      if (frame > 400 && frame < 495) most = std::max(most, (pin.contact_force - before).norm());
+      before = pin.contact_force;
+    });
+    EXPECT_LE(most, 1.5);
+  }
 }
 
 // The Virtuose's strongest push, through a coupling ten times as stiff.
