@@ -23,15 +23,17 @@ namespace verisim::exact {
 ///
 /// If a force presses several of them, it turns by a part k of the angle by which the place goes round within the step,
 /// and by the rest in the next one. What is off by an angle is off by 1 - 1 / k times that angle a step later: below
-/// k = 1/2 it goes to and fro with growing force. In a hollow k would be 1. Rows of the same stiffness have 0.1 to 0.5:
-/// most of them lie near the closest place. Where stiffness grows with the square of the angle, k is 1/2 to 8 at twice
-/// the angle before; that of the closest place itself is as small.
+/// k = 1/2 it goes to and fro with growing force. In a hollow k would be 1. Rows of the same stiffness have 0.1 and
+/// less: most of them lie near the closest place. Where stiffness grows with the square of the angle, k is at least 1/2
+/// if each is twice the one before, 0.4 at 2.2 times, and 1/4 of normals that lean to all sides; that of the closest
+/// place itself is as small (conforming_normals_test). Stiffer ones are nearer to a rigid body, and part bodies that
+/// are found wedged the faster.
 inline constexpr std::array<double, 14> kTurns = {0.001, 0.0022, 0.0048, 0.0106, 0.0234, 0.0515, 0.113,
                                                   0.25,  0.42,   0.7,    1.05,   1.55,   2.25,   pinned::kPi};
 /// As far as the next segments' ends, which have rows of their own.
 inline constexpr std::array<double, 8> kTurnsAlong = {0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128};
 /// A normal, or a place along an arc, at this angle is as stiff as the closest one would be alone [rad].
-inline constexpr double kTurnOfOne = 0.02, kLeanOfOne = 0.1, kTurnAlongOfOne = 0.002;
+inline constexpr double kTurnOfOne = 0.02, kLeanOfOne = 0.1, kTurnAlongOfOne = 0.004;
 
 /// Where a point lies within a hollow surface.
 struct HollowPlace {

@@ -109,7 +109,7 @@ struct SearchThresholds {
   double lead_enough =
       1;  ///< times its change to the next sample: by so much another face has to own a sample to cull it
   /// rad: a hollow of which the closest place passes less within a step needs one row; and so does a rim
-  double conforms = 0.1, held = 0.03;
+  double conforms = 0.1, held = 0.003;
   /// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
   /// useful normal.
   double blade = 0.1;
