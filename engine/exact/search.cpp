@@ -278,9 +278,11 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   if (!(clearance > kFlush && way > motion.thresholds.held * clearance && last < clearance)) return;
   const double half = placed.feature->half_width;
   const Candidate closest = closest_of_group(placed, curve, best.group, count);
-  if (!add_beside(placed, curve, closest, kTurnsAlong, count, face)) return;
+  const bool moves = pair_.moved(best.p, motion.during).norm() > motion.thresholds.slow;
+  const double of_one = moves ? kTurnAlongOfOneMoving : kTurnAlongOfOne;
+  if (!add_beside(placed, curve, closest, kTurnsAlong, of_one, count, face)) return;
   const double away = std::abs(2 * half * (best.sample - best.group) + best.place.t - closest.place.t);
-  best.weight *= std::min(1.0, part_beside(away));
+  best.weight *= std::min(1.0, part_beside(away, of_one));
 }
 
 /// The closest place of a group as it is now: the candidate, which is closest at the end of the step without contact,
@@ -298,15 +300,16 @@ Candidate Search::closest_of_group(const PlacedFeature& placed, const CurveFromS
 }
 
 /// Which part of a group's stiffness a row has that lies at this angle from the closest place (conforming_normals.hpp).
-double Search::part_beside(double turn) {
-  const double part = std::max(turn, kTurnsAlong.front()) / kTurnAlongOfOne;
+/// @param of_one  rad, angle at which it has all of it
+double Search::part_beside(double turn, double of_one) {
+  const double part = std::max(turn, kTurnsAlong.front()) / of_one;
   return part * part;
 }
 
 /// Adds rows along an arc beside a place, at these angles. None if the place is the end of its segments and not the
 /// closest, and none where all are as close: a group's ends say that. @returns whether there is one
 bool Search::add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
-                        std::span<const double> turns, std::uint32_t count, std::uint32_t face) {
+                        std::span<const double> turns, double of_one, std::uint32_t count, std::uint32_t face) {
   const Feature& feature = *placed.feature;
   const double half = feature.half_width;
   Measure here{};
@@ -327,7 +330,7 @@ bool Search::add_beside(const PlacedFeature& placed, const CurveFromSurface& cur
       c.sample = static_cast<std::uint32_t>(number);
       c.place = place_at(true, pair_.mover.sample_c[c.sample], pair_.mover.sample_s[c.sample], t - 2 * half * segments);
       if (!evaluate_candidate(placed, face, 1, c) || !(std::min(c.gap, c.gap_ahead) < kSlack)) continue;
-      c.weight *= part_beside(turn);
+      c.weight *= part_beside(turn, of_one);
       add_row(placed, c, count, face, curving(pair_, placed, c, face, 0));
       any = true;
     }
@@ -363,7 +366,8 @@ void Search::add_conforming(const PlacedFeature& placed, const CurveFromSurface&
   const ConformingNormals around = conforming_normals(*in, best.normal, touches);
   for (std::size_t i = 0; i < around.count; ++i) add(around.normals[i], around.parts[i]);
   constexpr std::size_t kFirst = 3;  // of kTurnsAlong
-  if (placed.is_arc()) (void)add_beside(placed, curve, best, std::span(kTurnsAlong).subspan(kFirst), count, face);
+  if (placed.is_arc())
+    (void)add_beside(placed, curve, best, std::span(kTurnsAlong).subspan(kFirst), kTurnAlongOfOne, count, face);
   // The closest row of what moves knows how that curves (curving.hpp).
   const bool moves = pair_.moved(best.p, motion.during).norm() > motion.thresholds.slow;
   if (any && !moves) best.weight *= around.part_of_closest;

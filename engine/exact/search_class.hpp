@@ -60,9 +60,9 @@ class Search {
                  std::uint32_t face);
   [[nodiscard]] Candidate closest_of_group(const PlacedFeature& placed, const CurveFromSurface& curve,
                                            std::uint32_t group, std::uint32_t count) const;
-  [[nodiscard]] static double part_beside(double turn);
+  [[nodiscard]] static double part_beside(double turn, double of_one);
   bool add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
-                  std::span<const double> turns, std::uint32_t count, std::uint32_t face);
+                  std::span<const double> turns, double of_one, std::uint32_t count, std::uint32_t face);
   void add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
                       std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
