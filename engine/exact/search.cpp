@@ -267,7 +267,8 @@ double Search::way_across(const PlacedFeature& placed, const Twist& twist) const
 /// with it.
 void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
                        std::uint32_t face) {
-  constexpr double kFlush = 1e-7;  // m: less is no clearance, and all of the curve touches
+  constexpr double kFlush = 1e-7;    // m: less is no clearance, and all of the curve touches
+  constexpr double kClosely = 0.01;  // of its radius: what slides round in more room needs one row
   if (!placed.is_arc() || placed.feature->own_face != kNoFace) return;
   const RelativeMotion& motion = pair_.motion;
   Measure here{};
@@ -275,7 +276,9 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   const double clearance = clearance_along(placed, here, best);
   const double last = way_across(placed, motion.last_twist);
   const double way = std::max(last, way_across(placed, motion.free_twist));
-  if (!(clearance > kFlush && way > motion.thresholds.held * clearance && last < clearance)) return;
+  const SearchThresholds& least = motion.thresholds;
+  const double fits = clearance < kClosely * placed.x.norm() ? least.held : least.conforms;
+  if (!(clearance > kFlush && way > fits * clearance && last < clearance)) return;
   const double half = placed.feature->half_width;
   const Candidate closest = closest_of_group(placed, curve, best.group, count);
   const bool moves = pair_.moved(best.p, motion.during).norm() > motion.thresholds.slow;
