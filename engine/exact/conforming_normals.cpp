@@ -1,5 +1,7 @@
 #include "engine/exact/conforming_normals.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "engine/base/error.hpp"
@@ -8,13 +10,17 @@
 namespace verisim::exact {
 namespace {
 
-constexpr std::array<double, 7> kLeans = {0.008, 0.016, 0.032, 0.064,
-                                          0.13,  0.34,  0.86};  // rad, from the closest normal
-constexpr std::size_t kSides = 8;                               // of a lean
+constexpr std::array<double, 8> kLeans = {0.008, 0.016, 0.032, 0.064,
+                                          0.128, 0.256, 0.512, 1.024};  // rad, from the closest normal
+constexpr std::size_t kSides = 8;                                       // of a lean
 static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
 static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
 
-constexpr std::size_t kFirstOfRing = 1, kWide = 6;  // of kTurns
+constexpr std::size_t kFirstOfRing = 2, kFirstOfFarRing = 7;  // of kTurns
+
+double square(double x) {
+  return x * x;
+}
 
 /// Cosine and sine of an angle.
 struct Turn {
@@ -38,14 +44,42 @@ const auto kSidesRound = [] {
   return turns_of(angles);
 }();
 
+/// Of kTurns. The narrow ones grow with the square of the angle. The others are those of even stiffness. What fits
+/// without a clearance is pressed from all round, and rests in the middle if no direction is preferred: the sums of the
+/// normals, and of their squares, are those of normals all round. That says how stiff two of them are.
+std::array<double, kTurns.size()> find_parts_of_turns() {
+  constexpr std::size_t narrow = 7, side = 11, back = 13;  // the last narrow one, across, and opposite
+  std::array<double, kTurns.size()> parts{};
+  for (std::size_t i = 0; i <= narrow; ++i) parts[i] = square(kTurns[i] / kTurnOfOne);
+  const double even = 2 * parts[narrow] / (kTurns[narrow + 1] - kTurns[narrow - 1]);  // 1/rad
+  for (std::size_t i = narrow + 1; i < back; ++i) parts[i] = even * (kTurns[i + 1] - kTurns[i - 1]) / 2;
+  parts[side] = parts[back] = 0;
+  double sum = 0, sum_of_doubled = 0;  // of cosines
+  for (std::size_t i = 0; i < kTurns.size(); ++i) {
+    sum += parts[i] * kTurnsAbout[i].c;
+    sum_of_doubled += parts[i] * (2 * square(kTurnsAbout[i].c) - 1);
+  }
+  const double c = kTurnsAbout[side].c;
+  parts[side] = -(sum + sum_of_doubled) / (c + 2 * c * c - 1);
+  parts[back] = sum + parts[side] * c;
+  return parts;
+}
+const auto kPartsOfTurns = find_parts_of_turns();
+
 /// Normals that turn with the closest one about an axis.
-void turn_about(const Vector3d& axis, const Vector3d& normal, std::span<const Turn> turns, ConformingNormals& found) {
+/// @param first  of kTurns
+void turn_about(const Vector3d& axis, const Vector3d& normal, std::size_t first, ConformingNormals& found) {
   const Vector3d along = normal.dot(axis) * axis;
   const Vector3d across = normal - along;
   const Vector3d side = axis.cross(across);
-  for (const Turn& turn : turns)
-    for (const double sense : {-1.0, 1.0})
+  for (std::size_t i = first; i < kTurns.size(); ++i) {
+    const Turn& turn = kTurnsAbout[i];
+    for (const double sense : {-1.0, 1.0}) {
+      found.parts[found.count] = kPartsOfTurns[i];
       found.normals[found.count++] = (along + turn.c * across + sense * turn.s * side).normalized();
+    }
+  }
+  found.part_of_closest = std::min(1.0, kPartsOfTurns[first]);
 }
 
 /// Normals on circles about the closest one.
@@ -53,13 +87,16 @@ void lean_to_all_sides(const Vector3d& normal, ConformingNormals& found) {
   const Vector3d first = normal.unitOrthogonal();
   const Vector3d second = normal.cross(first);
   std::size_t begin = 0;  // every other circle is turned by half a side
-  for (const Turn& lean : kLeansOut) {
+  for (std::size_t k = 0; k < kLeans.size(); ++k) {
+    const Turn& lean = kLeansOut[k];
     for (std::size_t i = begin; i < kSidesRound.size(); i += 2) {
       const Vector3d side = kSidesRound[i].c * first + kSidesRound[i].s * second;
+      found.parts[found.count] = square(kLeans[k] / kLeanOfOne);
       found.normals[found.count++] = lean.c * normal + lean.s * side;
     }
     begin = 1 - begin;
   }
+  found.part_of_closest = square(kLeans.front() / kLeanOfOne);
 }
 
 }  // namespace
@@ -99,8 +136,7 @@ ConformingNormals conforming_normals(const HollowPlace& place, const Vector3d& n
   if (place.is_in_ball) {
     lean_to_all_sides(normal, found);
   } else {
-    const std::size_t first = !place.is_in_tube ? 0 : touches ? kFirstOfRing : kWide;
-    turn_about(place.axis, normal, std::span(kTurnsAbout).subspan(first), found);
+    turn_about(place.axis, normal, !place.is_in_tube ? 0 : touches ? kFirstOfRing : kFirstOfFarRing, found);
   }
   return found;
 }

@@ -108,7 +108,8 @@ struct SearchThresholds {
   double end_apart = 0.25;  ///< of a group's length: an end that is nearer to the closest place needs no row of its own
   double lead_enough =
       1;  ///< times its change to the next sample: by so much another face has to own a sample to cull it
-  double conforms = 0.1;  ///< rad: a hollow of which the closest place passes less within a step needs one row
+  /// rad: a hollow of which the closest place passes less within a step needs one row; and so does a rim
+  double conforms = 0.1, held = 0.003;
   /// Smallest length of the blend of two unit normals: faces that meet at less than 12 degrees are a blade without a
   /// useful normal.
   double blade = 0.1;

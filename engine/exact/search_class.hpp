@@ -55,14 +55,16 @@ class Search {
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   [[nodiscard]] static double clearance_along(const PlacedFeature& placed, const Measure& here, const Candidate& c);
   [[nodiscard]] double slide(const Vector3d& p) const;
-  void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best, std::uint32_t count,
+  [[nodiscard]] double way_across(const PlacedFeature& placed, const Twist& twist) const;
+  void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
                  std::uint32_t face);
-  void add_beside_closest(const PlacedFeature& placed, const CurveFromSurface& curve, std::uint32_t group,
-                          std::uint32_t count, std::uint32_t face);
-  void add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
-                  std::span<const double> turns, std::uint32_t count, std::uint32_t face);
-  void add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
-                      std::uint32_t count, std::uint32_t face);
+  [[nodiscard]] Candidate closest_of_group(const PlacedFeature& placed, const CurveFromSurface& curve,
+                                           std::uint32_t group, std::uint32_t count) const;
+  [[nodiscard]] static double part_beside(double turn, double of_one);
+  bool add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
+                  std::span<const double> turns, double of_one, std::uint32_t count, std::uint32_t face);
+  void add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
+                      std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);
   /// `shares`: the group's stiffness with the closest place.
   struct GroupEnd {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "tests/length.hpp"
 
@@ -28,31 +27,25 @@ TEST_P(DrivenInsertion, ReachesTheEndWithTheKnownForce) {
   EXPECT_LE(o.jump_max, 10);  // N: a fifth of what would stop 1 kg at the hand's speed within a frame
 }
 
-// The most is that of one frame, in which the leaning pin first touches on both sides: which clearances it falls on
-// changes with every change of the engine, so that single ones say little.
 TEST(DrivenInsertionAtManyClearances, HardlyOverlaps) {
-  std::vector<double> overlaps;  // of the clearance
-  const double apart = verisim::test::by_length(1.8, 1.13, 1.13);
-  for (double clearance = 1e-5; clearance < 1e-4; clearance *= apart)
-    overlaps.push_back(run({.clearance = clearance}).overlap_max / clearance);
-  std::sort(overlaps.begin(), overlaps.end());
-  EXPECT_LE(overlaps[overlaps.size() / 2], 0.0125);
-  EXPECT_LE(overlaps.back(), 0.025);
+  for (const double clearance : verisim::test::some_of({1e-5, 1.4e-5, 2e-5, 2.8e-5, 4e-5, 5.6e-5, 8e-5}, 7)) {
+    SCOPED_TRACE(clearance);
+    EXPECT_LE(run({.clearance = clearance}).overlap_max, 0.01 * clearance);
+  }
 }
 
-// While the hand slowly leans, two rims hold the pin. Where their rows came and went with the segment that was closest,
-// the force went from 4 to 10 N and back every four steps. Wider ones are not held so evenly yet: 2 N at 30 um, 7
-// at 50.
+// While the hand slowly leans, two rims hold the pin between them by up to 150 N, and the places where they do go round
+// with it. Where most of a rim's rows lay at its closest place, the force went to and fro by 2 to 8 N every other step.
 TEST(DrivenInsertionAtManyClearances, PressesASlowlyLeaningPinEvenly) {
-  for (const double clearance : verisim::test::some_of({1e-5, 1.3e-5, 1.6e-5, 2e-5}, 3)) {
+  for (const double clearance : verisim::test::some_of({1e-5, 1.6e-5, 2e-5, 3e-5, 4e-5, 5e-5}, 6)) {
     SCOPED_TRACE(clearance);
     Vector3d before = Vector3d::Zero();
-    double most = 0;  // N, from step to step
+    double most = 0;  // N, from step to step; the hand's own is 0.026
     (void)run({.clearance = clearance}, [&](const HeldPin& pin, int frame) {
-      if (frame > 400 && frame < 495) most = std::max(most, (pin.contact_force - before).norm());
+      if (frame > 425 && frame < 495) most = std::max(most, (pin.contact_force - before).norm());
       before = pin.contact_force;
     });
-    EXPECT_LE(most, 1.5);
+    EXPECT_LE(most, 0.05);
   }
 }
 

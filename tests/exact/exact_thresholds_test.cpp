@@ -41,6 +41,7 @@ const Threshold kThresholds[] = {
     {"same_corner", [](Numbers& n, double factor) { n.options.same_corner *= factor; }},
     {"end_apart", [](Numbers& n, double factor) { n.thresholds.end_apart *= factor; }},
     {"lead_enough", [](Numbers& n, double factor) { n.thresholds.lead_enough *= factor; }},
+    {"held", [](Numbers& n, double factor) { n.thresholds.held *= factor; }},
     {"blade", [](Numbers& n, double factor) { n.thresholds.blade *= factor; }},
 };
 
