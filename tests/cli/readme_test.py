@@ -3,28 +3,24 @@ import os
 import re
 import unittest
 
+import readme
 from program import ProgramTest, SOURCE
 
 
-def readme():
+def text():
     with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as f:
         return f.read()
 
 
 class Readme(ProgramTest):
     def test_the_batch_has_the_figures_that_it_shows(self):
-        shown = readme().split("## I run batches")[1].split("```")[1].strip().splitlines()
-        words = shown[0].removeprefix("$ build/verisim ").split()
-        words[words.index("-o") + 1] = self.path("pins")
-        words = [os.path.join(SOURCE, w) if w.startswith("scenarios/") else w for w in words]
-        printed = self.succeed(*words).stdout.strip().splitlines()
+        shown = readme.shown(text(), readme.BATCH)
+        printed = self.succeed(*readme.command(text(), readme.BATCH, SOURCE, self.path("pins"))).stdout.strip().splitlines()
         self.assertEqual(printed[1:], shown[2:])  # the first line names the folder
 
     def test_the_trade_off_has_the_errors_that_it_shows(self):
-        shown = readme().split("## I trade speed for accuracy")[1].split("```")[1].strip().splitlines()
-        words = [os.path.join(SOURCE, w) if w.startswith("scenarios/") else w for w in shown[0].removeprefix("$ build/verisim ").split()]
-        words[words.index("-o") + 1] = self.path("trade")
-        printed = self.succeed(*words).stdout.strip().splitlines()
+        shown = readme.shown(text(), readme.TRADE_OFF)
+        printed = self.succeed(*readme.command(text(), readme.TRADE_OFF, SOURCE, self.path("trade"))).stdout.strip().splitlines()
         self.assertEqual(printed[:2], shown[1:3], "the truth, and what is known of it")
         names = ["#", "hybrid", "voxelsize", "frame, us", "from", "to", "us per ms", "force, N"]
         self.assertEqual(re.split("  +", shown[3].strip())[:len(names)], re.split("  +", "  ".join(names)))
@@ -36,7 +32,7 @@ class Readme(ProgramTest):
         self.assertEqual(computed(printed), computed(shown))
 
     def test_the_ledgers_have_the_figures_that_it_shows(self):
-        shown = re.search(r"^passivity ledgers, J\n(.*?)  …$", readme(), re.M | re.S)[1].splitlines()
+        shown = readme.LEDGERS.search(text())[2].splitlines()
         printed = self.succeed("stability", "--only", "ledgers").stdout.splitlines()
         for line in shown[1:]:
             begin = line.split("…")[0].split()
