@@ -34,7 +34,10 @@ inline constexpr std::array<double, 14> kTurns = {0.001, 0.0022, 0.0048, 0.0106,
 inline constexpr std::array<double, 8> kTurnsAlong = {0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128};
 /// A normal, or a place along an arc, at this angle is as stiff as the closest one would be alone [rad].
 inline constexpr double kTurnOfOne = 0.02, kLeanOfOne = 0.1, kTurnAlongOfOne = 0.004;
-/// Likewise of what moves: if it wedges within a step, it is parted less violently.
+/// Likewise of a ring, of which places are held along it and round its tube: as a ball's, whose normals lean to all
+/// sides.
+inline constexpr double kTurnAlongRingOfOne = 0.05;
+/// Likewise of a rim that moves: if it wedges within a step, it is parted less violently.
 inline constexpr double kTurnAlongOfOneMoving = 0.01;
 
 /// Where a point lies within a hollow surface.

@@ -61,6 +61,10 @@ class Search {
   [[nodiscard]] Candidate closest_of_group(const PlacedFeature& placed, const CurveFromSurface& curve,
                                            std::uint32_t group, std::uint32_t count) const;
   [[nodiscard]] static double part_beside(double turn, double of_one);
+  [[nodiscard]] static Measure measure_at(const CurveFromSurface& curve, const Place& place);
+  [[nodiscard]] std::optional<Candidate> candidate_beside(const PlacedFeature& placed, const Candidate& closest,
+                                                          double turn, std::uint32_t face);
+  [[nodiscard]] static bool is_bent(const Measure& here);
   bool add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
                   std::span<const double> turns, double of_one, std::uint32_t count, std::uint32_t face);
   void add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,

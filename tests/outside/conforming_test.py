@@ -55,15 +55,14 @@ class ConformingTest(SceneTest):
         # Its rims run round what is hardly smaller: one place of each went round by 0.1 rad a step and made 36 mN rms.
         # A ball in its socket and a ring in its groove without clearance: where the closest place was beyond the mouth, the
         # places inside it gave no row, and the whole force came every other step. A ball in a socket of 0.05 mm went to and
-        # fro between the planes of its rows (2.6 mN). Not among them, for they are above 1 mN still: rings with clearance
-        # (11 of 100, 19 mN at most), or without it and askew by more than 0.03 rad (0.4 N).
-        kinds = {"post": (0, 1e-6, 1e-5, 5e-5), "through": (0, 1e-6, 1e-5, 5e-5), "cap": (0, 1e-6, 1e-5, 5e-5),
-                 "socket": (0, 1e-6, 1e-5, 5e-5), "ring": (0,)}
-        for kind, clearances in kinds.items():
+        # fro between the planes of its rows (2.6 mN). A ring had its rows beside the place that was closest at the end of the
+        # step without contact, and none where it touched (11 of 100 draws, 19 mN; askew and without clearance 0.4 N). Of 200
+        # rings 3 are above 1 mN still, by 2.6 at most.
+        for kind in ("post", "through", "cap", "socket", "ring"):
             for seed in range(24 if LONG else 6):
                 draw = random.Random("{} {}".format(kind, seed))
-                how = {"c": draw.choice(clearances), "press": draw.uniform(0.002, 0.012), "side": draw.uniform(0, 0.01),
-                       "tilt": draw.uniform(0, 0.03 if kind == "ring" else 0.1), "turn": draw.uniform(0, 6.28),
+                how = {"c": draw.choice((0, 1e-6, 1e-5, 5e-5)), "press": draw.uniform(0.002, 0.012), "side": draw.uniform(0, 0.01),
+                       "tilt": draw.uniform(0, 0.1), "turn": draw.uniform(0, 6.28),
                        "timestep": draw.choice([0.0005, 0.001, 0.002])}
                 if kind == "through":
                     how["press"] = 0  # nothing stops it
