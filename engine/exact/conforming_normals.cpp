@@ -16,7 +16,7 @@ constexpr std::size_t kSides = 8;                                       // of a 
 static_assert(2 * kTurns.size() <= ConformingNormals::kMax);
 static_assert(kSides * kLeans.size() <= ConformingNormals::kMax);
 
-constexpr std::size_t kFirstOfRing = 2, kFirstOfFarRing = 7;  // of kTurns
+constexpr std::size_t kFirstOfRing = 2, kWide = 7;  // of kTurns
 
 double square(double x) {
   return x * x;
@@ -67,12 +67,13 @@ std::array<double, kTurns.size()> find_parts_of_turns() {
 const auto kPartsOfTurns = find_parts_of_turns();
 
 /// Normals that turn with the closest one about an axis.
-/// @param first  of kTurns
-void turn_about(const Vector3d& axis, const Vector3d& normal, std::size_t first, ConformingNormals& found) {
+/// @param first, end  of kTurns
+void turn_about(const Vector3d& axis, const Vector3d& normal, std::size_t first, std::size_t end,
+                ConformingNormals& found) {
   const Vector3d along = normal.dot(axis) * axis;
   const Vector3d across = normal - along;
   const Vector3d side = axis.cross(across);
-  for (std::size_t i = first; i < kTurns.size(); ++i) {
+  for (std::size_t i = first; i < end; ++i) {
     const Turn& turn = kTurnsAbout[i];
     for (const double sense : {-1.0, 1.0}) {
       found.parts[found.count] = kPartsOfTurns[i];
@@ -131,12 +132,14 @@ std::optional<HollowPlace> hollow_place(const AnalyticSurface& surface, const Ve
   return place;
 }
 
-ConformingNormals conforming_normals(const HollowPlace& place, const Vector3d& normal, bool touches) {
+ConformingNormals conforming_normals(const HollowPlace& place, const Vector3d& normal, bool touches, bool stays) {
   ConformingNormals found;
   if (place.is_in_ball) {
     lean_to_all_sides(normal, found);
+  } else if (place.is_in_tube) {
+    turn_about(place.axis, normal, touches ? kFirstOfRing : kWide, stays ? kWide : kTurns.size(), found);
   } else {
-    turn_about(place.axis, normal, !place.is_in_tube ? 0 : touches ? kFirstOfRing : kFirstOfFarRing, found);
+    turn_about(place.axis, normal, 0, kTurns.size(), found);
   }
   return found;
 }

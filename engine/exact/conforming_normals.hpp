@@ -62,6 +62,8 @@ struct ConformingNormals {
 /// @param normal   the closest one
 /// @param touches  at that place? A ring lies on many places of a tube at once; those that do not touch yet have the
 ///                 wider angles only
-[[nodiscard]] ConformingNormals conforming_normals(const HollowPlace& place, const Vector3d& normal, bool touches);
+/// @param stays    there? Then a ring has the narrower angles only: it has a row for what it slides to
+[[nodiscard]] ConformingNormals conforming_normals(const HollowPlace& place, const Vector3d& normal, bool touches,
+                                                   bool stays);
 
 }  // namespace verisim::exact

@@ -55,6 +55,7 @@ class Search {
   [[nodiscard]] bool is_passed_by(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& c) const;
   [[nodiscard]] static double clearance_along(const PlacedFeature& placed, const Measure& here, const Candidate& c);
   [[nodiscard]] double slide(const Vector3d& p) const;
+  [[nodiscard]] double slide_along(const Candidate& c) const;
   [[nodiscard]] double way_across(const PlacedFeature& placed, const Twist& twist) const;
   void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
                  std::uint32_t face);

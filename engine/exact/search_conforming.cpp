@@ -28,6 +28,15 @@ double Search::slide(const Vector3d& p) const {
   return std::max(pair_.moved(p, motion.free_twist).norm(), pair_.moved(p, motion.last_twist).norm());
 }
 
+/// Likewise along what it is pressed on.
+double Search::slide_along(const Candidate& c) const {
+  const auto of = [&](const Twist& twist) {
+    const Vector3d way = pair_.moved(c.p, twist);
+    return (way - std::min(way.dot(c.normal), 0.0) * c.normal).norm();
+  };
+  return std::max(of(pair_.motion.free_twist), of(pair_.motion.last_twist));
+}
+
 /// How far an arc is moved in its plane within the step [m]: along its axis it stays as far from what it turns about.
 double Search::way_across(const PlacedFeature& placed, const Twist& twist) const {
   const Vector3d way = pair_.moved(placed.origin, twist);
@@ -130,7 +139,7 @@ bool Search::add_beside(const PlacedFeature& placed, const CurveFromSurface& cur
 /// that are assumed lead it.
 void Search::add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best,
                             std::uint32_t count, std::uint32_t face) {
-  constexpr double kTouches = 0.01;  // of the clearance
+  constexpr double kTouches = 0.01, kStays = 0.05;  // of the clearance
   const RelativeMotion& motion = pair_.motion;
   const AnalyticSurface& surface = *pair_.base.faces[face].surface;
   std::optional<Candidate> of_ring;
@@ -154,7 +163,8 @@ void Search::add_conforming(const PlacedFeature& placed, const CurveFromSurface&
     any = true;
   };
   const bool touches = closest.gap < std::max(kTouches * in->radius, motion.thresholds.coincident);
-  const ConformingNormals around = conforming_normals(*in, closest.normal, touches);
+  const bool stays = touches && slide_along(closest) < kStays * in->radius;
+  const ConformingNormals around = conforming_normals(*in, closest.normal, touches, stays);
   for (std::size_t i = 0; i < around.count; ++i) add(around.normals[i], around.parts[i]);
   if (of_ring) (void)add_beside(placed, curve, closest, kTurnsAlong, kTurnAlongRingOfOne, count, face);
   // The closest row of what moves knows how that curves (curving.hpp).

@@ -28,12 +28,12 @@ std::vector<Plane> planes_of(const ConformingNormals& around) {
 
 std::vector<Plane> round_an_axis() {
   return planes_of(
-      conforming_normals({.pivot = Vector3d::Zero(), .radius = 1, .axis = Vector3d::UnitZ()}, kClosest, true));
+      conforming_normals({.pivot = Vector3d::Zero(), .radius = 1, .axis = Vector3d::UnitZ()}, kClosest, true, false));
 }
 
 std::vector<Plane> in_a_ball() {
   return planes_of(conforming_normals(
-      {.pivot = Vector3d::Zero(), .radius = 1, .axis = Vector3d::UnitZ(), .is_in_ball = true}, kClosest, true));
+      {.pivot = Vector3d::Zero(), .radius = 1, .axis = Vector3d::UnitZ(), .is_in_ball = true}, kClosest, true, false));
 }
 
 std::vector<Plane> along_an_arc() {
