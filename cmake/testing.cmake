@@ -21,7 +21,9 @@ function(verisim_test_program target)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
-    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list})
+    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list}
+            $<$<BOOL:${VERISIM_SANITIZE}>:${PROJECT_SOURCE_DIR}/tests/sweeps.txt>
+    COMMAND_EXPAND_LISTS)
   file(WRITE ${list}.include "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n"
                              "  add_test(${target}_NOT_BUILT ${target}_NOT_BUILT)\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${list}.include)

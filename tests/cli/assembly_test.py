@@ -7,7 +7,6 @@ import unittest
 from program import ProgramTest, SHARED, SOURCE
 
 MODELS = os.path.join(SHARED, "models")
-SANITIZED = os.environ["VERISIM_SANITIZE"] != ""  # ten times slower: one run of each kind
 SEEDS = (1, 2, 3)
 LOOSE = {"instead": "models/shaft_loose.step", "voxelsize": "mm(0.7)"}  # 0.7 mm of room on the radius
 PRESSED = {"instead": "models/shaft_m6.step"}
@@ -36,7 +35,6 @@ class Assemblies(ProgramTest):
         self.assertAlmostEqual(fits["bearing inner ring", "shaft"], 4.25, places=3)          # um, g6 in 20 0/-10
         self.assertAlmostEqual(fits["housing", "bearing outer ring"], 9.0, places=3)         # um, 47 0/-11 in H7
 
-    @unittest.skipIf(SANITIZED, "test_the_bearing_goes_into_its_housing_as_one_body runs the same code")
     def test_a_shaft_with_its_own_4_um_goes_in_under_exact(self):
         for seed in SEEDS:
             summary = self.assert_ends("assembled", seed, hybrid="exact")
@@ -45,7 +43,6 @@ class Assemblies(ProgramTest):
             self.assertLess(abs(summary["measures"]["left"]["value"]), 2 * 4.25e-6 / 12 * 12.5 + 1e-6)
             self.assertLess(summary["max_penetration_m"], 1e-6)
 
-    @unittest.skipIf(SANITIZED, "test_the_bearing_goes_into_its_housing_as_one_body runs the same code")
     def test_a_pressed_shaft_stays_in_the_mouth_under_every_method(self):
         for hybrid in ("off", "restore", "exact"):
             for seed in SEEDS[:2]:
@@ -53,7 +50,6 @@ class Assemblies(ProgramTest):
         # Two leads of 45 degrees lie on each other when the shaft's end is 1 mm less 9.75 um below the bore's corner.
         self.assertAlmostEqual(summary["measures"]["left"]["value"], 0.01700975, delta=1e-6)
 
-    @unittest.skipIf(SANITIZED, "every scenario under restore runs the same code")
     def test_a_shaft_with_a_voxel_of_room_goes_in_under_restore_and_exact_and_not_without_them(self):
         for seed in SEEDS:
             self.assert_ends("assembled", seed, hybrid="restore", **LOOSE)
@@ -64,7 +60,6 @@ class Assemblies(ProgramTest):
         summary = self.assert_ends("assembled", 1, hybrid="exact", **ONLY_BEARING)
         self.assertLess(abs(summary["measures"]["left"]["value"]), 1e-4)
 
-    @unittest.skipIf(SANITIZED, "test_the_bearing_goes_into_its_housing_as_one_body runs the same code")
     def test_every_run_of_it_is_the_same(self):
         for settings in ({"hybrid": "exact"}, {"hybrid": "restore", **LOOSE}):
             first = self.assemble(4, **settings)["state_hash"]
@@ -72,13 +67,11 @@ class Assemblies(ProgramTest):
             self.assertNotEqual(self.assemble(5, **settings)["state_hash"], first)
             self.succeed("replay", self.path("run.h5"), "--verify")
 
-    @unittest.skipIf(SANITIZED, "test_the_bearing_goes_into_its_housing_as_one_body runs the same code")
     def test_what_is_assembled_comes_out_and_goes_back(self):
         summary = self.assert_ends("pulled and returned", 1, hybrid="exact", way="out")
         self.assertGreater(summary["measures"]["pulled"]["value"], 0.05)
 
     @unittest.skipUnless(os.path.isdir(MODELS), f"no models of other people at {MODELS}: nothing was assembled")
-    @unittest.skipIf(SANITIZED, "test_the_bearing_goes_into_its_housing_as_one_body runs the same code")
     def test_a_drawn_shaft_of_no_clearance_goes_into_a_drawn_ball_bearing(self):
         """Both are drawn with 20 mm, line to line, with sharp corners: nobody may misjudge anything."""
         files = [os.path.join(MODELS, "freecad_cc0", f) for f in ("bearing_20x37x9.stp", "axis.stp")]

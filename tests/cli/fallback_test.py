@@ -11,7 +11,6 @@ import numpy
 from program import ProgramTest, SHARED, SOURCE, turned_stl
 
 PEGS = os.path.join(SHARED, "models", "factory_pegs")
-SANITIZED = os.environ["VERISIM_SANITIZE"] != ""  # ten times slower
 
 # A rod is pushed through a bush that knows its faces or not, and against its wall; a tray is near, never touched.
 BUSH = """
@@ -168,7 +167,7 @@ class Fallback(ProgramTest):
         self.succeed("replay", run_file, "--verify")
 
     def test_very_many_pairs_are_in_the_json_and_few_in_the_table(self):
-        count = 100 if SANITIZED else 400
+        count = 400
         script = """
             defineSimulationParameters{ allBodiesAreDynamic = true, gravity = {0, 0, -9.81}, duration = 0.06 }
             addObject{ name = "plate", fixed = true, voxelsize = 0.01, Solid.box{2, 2, 0.02} }

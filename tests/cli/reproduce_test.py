@@ -14,8 +14,8 @@ import h5py
 from program import ProgramTest, VERISIM
 
 KEYS = {"id", "what", "published", "here", "ratio", "why", "runs"}
-SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower: without the five that take most of the time
-LEFT_OUT = ["R1", "R3", "R9", "R10", "R11"] if SANITIZED else []
+SANITIZED = os.environ.get("VERISIM_SANITIZE", "") != ""  # ten times slower: without those that take most of the time
+LEFT_OUT = ["R1", "R2", "R3", "R5", "R9", "R10", "R11"] if SANITIZED else []
 IDS = [f"R{i}" for i in range(1, 12) if f"R{i}" not in LEFT_OUT]
 
 
@@ -124,6 +124,7 @@ class Reproduce(ProgramTest):
             # An empty block between two frames is no long period of either.
             self.assertLess(run["/timing/period_ns"][1:].max(), 0.9e9)
 
+    @unittest.skipIf("R2" in LEFT_OUT, "not measured")
     def test_r2_restored_the_operator_passes_every_two_seconds(self):
         off, restore, ratio = self.rows("R2")
         self.assertEqual([row["published"] for row in (off, restore, ratio)], [3 / 28, 5 / 10, 14 / 3])
@@ -163,6 +164,7 @@ class Reproduce(ProgramTest):
         with open(self.path(self.files("R4")[0])) as f:
             self.assertEqual(len(f.readlines()), 1 + 64, "all states of six recognizers")
 
+    @unittest.skipIf("R5" in LEFT_OUT, "not measured")
     def test_r5_run_files_are_runs(self):
         runs = [file for file in self.files("R5") if file.endswith(".h5")]
         self.assertEqual(len(runs), 2)

@@ -10,7 +10,6 @@ from program import SOURCE, VERISIM, ProgramTest
 
 SCENARIOS = os.path.join(SOURCE, "scenarios")
 AVR = os.path.join(os.path.dirname(VERISIM), "verisim-avr")
-SANITIZED = os.environ["VERISIM_SANITIZE"] != ""  # ten times slower
 LONG = os.environ.get("VERISIM_LONG_TESTS") == "1"
 REACH = 0.225  # m, half of the Virtuose's workspace
 
@@ -27,7 +26,7 @@ class RobotScenes(ProgramTest):
 
     def test_a_walk_feels_as_if_the_base_were_fixed(self):
         """Issue numbers: workspace kept, added force under 0.5 N rms, stiffness within 10 %, heading under 2 degrees."""
-        for seed in "1" if SANITIZED else "123":
+        for seed in "123":
             summary, measured, run_file = self.scene("robot_walk", "--seed", seed)
             self.assertEqual(summary["outcome"], "set down", seed)
             self.assertLess(measured["handle_off_neutral_max"], REACH)
@@ -44,12 +43,10 @@ class RobotScenes(ProgramTest):
                 self.assertGreater(speed.max(), 0.8)  # hasty steps were made
         self.succeed("replay", run_file, "--verify")
 
-    @unittest.skipIf(SANITIZED, "a walk runs the same code")
     def test_the_last_report_alone_is_felt(self):
         _, measured, _ = self.scene("robot_walk", "--set", "predict=false")
         self.assertGreater(measured["added_force_rms"], 1)
 
-    @unittest.skipIf(SANITIZED, "walls_test runs the same code")
     def test_walls_are_never_touched(self):
         runs = 1000 if LONG else 24
         told = self.run_json("batch", os.path.join(SCENARIOS, "robot_wall.lua"), "--random", str(runs), "gain=2000..100000", "dropouts=0..1",
@@ -59,7 +56,6 @@ class RobotScenes(ProgramTest):
         # There was something to touch.
         self.assertIn("touched a wall", self.scene("robot_wall", "--set", "walls=false")[0]["outcome"])
 
-    @unittest.skipIf(SANITIZED, "test_everything_at_once_replays_to_the_bit runs the same code")
     def test_each_part_can_stop_and_start_again(self):
         summary, _, run_file = self.scene("robot_restart")
         self.assertEqual(summary["outcome"], "10 of 10 came back")
@@ -112,7 +108,6 @@ class RobotScenes(ProgramTest):
         self.assertLess(numpy.abs(pose[:, 0] - wanted).max(), 1e-9)
 
     @unittest.skipUnless(os.path.exists(AVR), "verisim-avr is not built: gcc-avr, avr-libc and simavr are missing")
-    @unittest.skipIf(SANITIZED, "avr_test runs the same code")
     def test_the_other_board_drives_the_same_walk(self):
         _, host, _ = self.scene("robot_walk")
         summary, avr, run_file = self.scene("robot_walk", "--set", "board=avr")

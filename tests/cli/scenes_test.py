@@ -8,7 +8,6 @@ import unittest
 from program import turned_stl, ProgramTest, SHARED, SOURCE
 
 MODELS = os.path.join(SHARED, "models")
-SANITIZED = os.environ["VERISIM_SANITIZE"] != ""  # ten times slower: fewer seeds
 
 
 class Scenes(ProgramTest):
@@ -21,7 +20,6 @@ class Scenes(ProgramTest):
                   f"collision frames, {summary['measures']}")
         return summary
 
-    @unittest.skipIf(SANITIZED, "test_golden_hashes runs the same code")
     def test_peg_in_hole(self):
         s = self.scene("peg_in_hole")
         self.assertEqual(s["frames"], 45833)
@@ -34,7 +32,6 @@ class Scenes(ProgramTest):
         self.assertEqual(s["cache_hits"] + s["cache_misses"], s["collisions"])
         self.assertGreater(s["cache_misses"], 0)
 
-    @unittest.skipIf(SANITIZED, "test_golden_hashes runs the same code")
     def test_peg_in_hole_with_half_a_voxel_of_clearance(self):
         """Every approach lands on the rim. What guides the pin in there must not be taken for friction: if it is, the
         pin glides off and falls over."""
@@ -48,7 +45,6 @@ class Scenes(ProgramTest):
         # Of one seed it is 1 to 2.5 mm, under both: that of a voxel, as it is met.
         self.assertLess(statistics.median(depth["restore"]), 1.1 * statistics.median(depth["off"]))
 
-    @unittest.skipIf(SANITIZED, "test_golden_hashes runs the same code")
     def test_a_hole_that_is_misjudged_is_found_by_those_who_search(self):
         """20 mm beside a hole of 2 mm of clearance: 30 seeds of the whole trial are in the scenario's notes."""
         for seed in "34":
@@ -76,12 +72,10 @@ class Scenes(ProgramTest):
         self.assertLess(s["measures"]["height_max"]["value"], 0.003)    # never more than a voxel above the plate …
         self.assertGreater(s["measures"]["height_min"]["value"], -0.003)  # … or in it
 
-    @unittest.skipIf(SANITIZED, "test_golden_hashes runs the same code")
     def test_stack(self):
         for integrator in ["semi-implicit", "implicit"]:
             self.assertEqual(self.scene("stack", "--set", "integrator=" + integrator)["outcome"], "stacked", integrator)
 
-    @unittest.skipIf(SANITIZED, "assembly_test runs the same code")
     @unittest.skipUnless(os.path.isdir(MODELS), "the shared models are not there")
     def test_assembly_of_real_parts(self):
         crank = [os.path.join(MODELS, "freecad_cc0", f) for f in ("crank_base.stp", "crank_disk.stp")]
