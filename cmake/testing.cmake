@@ -20,10 +20,12 @@ function(verisim_test_program target)
   target_link_libraries(${target} PRIVATE verisim_flags verisim_off_the_loop verisim_paths GTest::gtest_main)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}.cmake)
+  set(left_out)
+  if(VERISIM_SANITIZE)
+    set(left_out ${PROJECT_SOURCE_DIR}/tests/sweeps.txt)
+  endif()
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM
-    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list}
-            $<$<BOOL:${VERISIM_SANITIZE}>:${PROJECT_SOURCE_DIR}/tests/sweeps.txt>
-    COMMAND_EXPAND_LISTS)
+    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/list_tests.py $<TARGET_FILE:${target}> ${list} ${left_out})
   file(WRITE ${list}.include "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n"
                              "  add_test(${target}_NOT_BUILT ${target}_NOT_BUILT)\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${list}.include)
