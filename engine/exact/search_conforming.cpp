@@ -56,11 +56,12 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   const RelativeMotion& motion = pair_.motion;
   const Measure here = measure_at(curve, best.place);
   const double clearance = clearance_along(placed, here, best);
+  if (!(clearance > kFlush)) return;
   const double last = way_across(placed, motion.last_twist);
   const double way = std::max(last, way_across(placed, motion.free_twist));
   const SearchThresholds& least = motion.thresholds;
   const double fits = clearance < kClosely * placed.x.norm() ? least.held : least.conforms;
-  if (!(clearance > kFlush && way > fits * clearance && last < clearance)) return;
+  if (!(way > fits * clearance && last < clearance)) return;
   const double half = placed.feature->half_width;
   const Candidate closest = closest_of_group(placed, curve, best.group, count);
   const bool moves = pair_.moved(best.p, motion.during).norm() > motion.thresholds.slow;
