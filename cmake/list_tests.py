@@ -1,5 +1,6 @@
-"""Writes the ctest entries of a test program: list_tests.py PROGRAM OUTPUT.cmake [LEFT_OUT.txt]. The name of an entry begins with the
-file that the test stands in: memo_test.Suite.Case. A case with parameters is one entry, so that its instances share what
+"""Writes the ctest entries of a test program: list_tests.py PROGRAM OUTPUT.cmake [LEFT_OUT.txt].
+
+The name of an entry begins with the file that the test stands in: memo_test.Suite.Case. A case with parameters is one entry, so that its instances share what
 they compare themselves with; where a file skips tests each is an entry, for ctest knows an entry as skipped or not. An
 instance that is skipped all the same fails its entry: nothing is skipped unseen. LEFT_OUT.txt: tests that have no entry.
 """

@@ -66,8 +66,8 @@ class Search {
   [[nodiscard]] std::optional<Candidate> candidate_beside(const PlacedFeature& placed, const Candidate& closest,
                                                           double turn, std::uint32_t face);
   [[nodiscard]] static bool is_bent(const Measure& here);
-  bool add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
-                  std::span<const double> turns, double of_one, std::uint32_t count, std::uint32_t face);
+  bool add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest, double of_one,
+                  std::uint32_t count, std::uint32_t face);
   void add_conforming(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
                       std::uint32_t face);
   static void ask_beyond_the_end(const PlacedFeature& placed, const Candidate& best, std::span<double> remaining);

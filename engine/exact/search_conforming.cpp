@@ -66,7 +66,7 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   const Candidate closest = closest_of_group(placed, curve, best.group, count);
   const bool moves = pair_.moved(best.p, motion.during).norm() > motion.thresholds.slow;
   const double of_one = moves ? kTurnAlongOfOneMoving : kTurnAlongOfOne;
-  if (!add_beside(placed, curve, closest, kTurnsAlong, of_one, count, face)) return;
+  if (!add_beside(placed, curve, closest, of_one, count, face)) return;
   const double away = std::abs(2 * half * (best.sample - best.group) + best.place.t - closest.place.t);
   best.weight *= std::min(1.0, part_beside(away, of_one));
 }
@@ -116,14 +116,14 @@ bool Search::is_bent(const Measure& here) {
   return here.bend * kTurnsAlong.back() * kTurnsAlong.back() >= 2 * kSlack;
 }
 
-/// Adds rows along an arc beside a place, at these angles. None if the place is the end of its segments and not the
+/// Adds rows along an arc beside a place, at kTurnsAlong. None if the place is the end of its segments and not the
 /// closest, or all are as close. @returns whether there is one
 bool Search::add_beside(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& closest,
-                        std::span<const double> turns, double of_one, std::uint32_t count, std::uint32_t face) {
+                        double of_one, std::uint32_t count, std::uint32_t face) {
   const Measure here = measure_at(curve, closest.place);
   if (!is_bent(here) || !(std::abs(here.slope) <= placed.feature->half_width * here.bend)) return false;
   bool any = false;
-  for (const double turn : turns) {
+  for (const double turn : kTurnsAlong) {
     for (const double sense : {-1.0, 1.0}) {
       std::optional<Candidate> c = candidate_beside(placed, closest, sense * turn, face);
       if (!c || !(std::min(c->gap, c->gap_ahead) < kSlack)) continue;
@@ -143,6 +143,7 @@ void Search::add_conforming(const PlacedFeature& placed, const CurveFromSurface&
   constexpr double kTouches = 0.01, kStays = 0.05;  // of the clearance
   const RelativeMotion& motion = pair_.motion;
   const AnalyticSurface& surface = *pair_.base.faces[face].surface;
+  if (!hollow_place(surface, best.p)) return;
   std::optional<Candidate> of_ring;
   if (placed.is_arc() && is_bent(measure_at(curve, best.place)))
     of_ring = candidate_beside(placed, closest_of_group(placed, curve, best.group, count), 0, face);
@@ -167,7 +168,7 @@ void Search::add_conforming(const PlacedFeature& placed, const CurveFromSurface&
   const bool stays = touches && slide_along(closest) < kStays * in->radius;
   const ConformingNormals around = conforming_normals(*in, closest.normal, touches, stays);
   for (std::size_t i = 0; i < around.count; ++i) add(around.normals[i], around.parts[i]);
-  if (of_ring) (void)add_beside(placed, curve, closest, kTurnsAlong, kTurnAlongRingOfOne, count, face);
+  if (of_ring) (void)add_beside(placed, curve, closest, kTurnAlongRingOfOne, count, face);
   // The closest row of what moves knows how that curves (curving.hpp).
   const bool moves = pair_.moved(closest.p, motion.during).norm() > motion.thresholds.slow;
   if (any && !moves) best.weight *= around.part_of_closest;
