@@ -42,7 +42,9 @@ constexpr double kClosestPlaceGain =
 /// minimum, the downhill end is taken. Over most segments the distance is nearly a parabola, and one step is enough.
 /// @param half          of the segment's width, in t
 /// @param radius_slope  derivative by t of the radius of the ball that the curve carries
-inline Place closest_place(const CurveFromSurface& curve, double c, double s, double half, double radius_slope = 0) {
+/// @param at_middle     if it is known
+inline Place closest_place(const CurveFromSurface& curve, double c, double s, double half, double radius_slope = 0,
+                           const Measure* at_middle = nullptr) {
   constexpr int kStepsMax = 40;  // a bound of the work: two are needed, or as many as halve the segment to nothing
   constexpr int kNewtonMax = 4;  // then halves: Newton's steps are of no use where the distance has a kink
   Place at{0, c, s};
@@ -53,7 +55,7 @@ inline Place closest_place(const CurveFromSurface& curve, double c, double s, do
     double low = -half;
     double high = half;
     for (int i = 0; i < kStepsMax; ++i) {
-      const Measure m = measure_at(at.c, at.s);
+      const Measure m = i == 0 && at_middle != nullptr ? *at_middle : measure_at(at.c, at.s);
       const double slope = m.slope - radius_slope;
       (slope > 0 ? high : low) = at.t;
       const double wanted = m.bend > 0 ? at.t - slope / m.bend : (slope > 0 ? low : high);

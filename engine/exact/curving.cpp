@@ -47,30 +47,39 @@ double of_passing(const BodyPair& pair, const PlacedFeature& placed, const Candi
   return std::clamp(gap - end, 0.0, lack);
 }
 
-/// The place of `count` segments from `first` on that is closest to a surface.
-Place closest_of(const BodyPair& pair, const PlacedFeature& placed, const AnalyticSurface& surface, std::uint32_t first,
+/// The place of `count` segments from `first` on that is closest to a face.
+Place closest_of(const BodyPair& pair, FeatureAfter& after, const AnalyticSurface& surface, std::uint32_t first,
                  std::uint32_t count) {
-  const double half = placed.feature->half_width;
-  const Place middle = place_at(placed.is_arc(), pair.mover.sample_c[first], pair.mover.sample_s[first],
-                                half * (static_cast<double>(count) - 1));
-  return closest_place(pair.seen_from(surface, placed, {}), middle.c, middle.s, count * half,
-                       placed.feature->radius_slope);
+  const Feature& feature = *after.placed().feature;
+  const Place middle = place_at(after.placed().is_arc(), pair.mover.sample_c[first], pair.mover.sample_s[first],
+                                feature.half_width * (static_cast<double>(count) - 1));
+  return closest_place(after.seen_from(pair, surface), middle.c, middle.s, count * feature.half_width,
+                       feature.radius_slope);
+}
+
+/// Is there no closer place of the candidate's group, to which the place of its segment leads?
+bool is_closest_of_group(const FeatureAfter& after, const Candidate& c, const Place& at, std::uint32_t count) {
+  const double half = after.placed().feature->half_width;
+  if (std::abs(at.t) < half) return true;
+  return c.sample == c.group + (at.t > 0 ? count - 1 : 0);
 }
 
 /// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
 /// If the group, of `count` segments, is nearer by more than what touches anyway, that of the group.
-SurfaceAt closest_gap(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t face,
+SurfaceAt closest_gap(const BodyPair& pair, FeatureAfter& after, const Candidate& c, std::uint32_t face,
                       std::uint32_t count) {
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
+  const PlacedFeature& placed = after.placed();
   const auto gap_at = [&](const Place& place) {
     SurfaceAt at = surface.at(placed.point(place));
     at.distance -= placed.feature->radius_at(place.c);
     return at;
   };
   if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
-  SurfaceAt of_segment = gap_at(closest_of(pair, placed, surface, c.sample, 1));
-  if (count == 1) return of_segment;
-  SurfaceAt of_group = gap_at(closest_of(pair, placed, surface, c.group, count));
+  const Place here = closest_of(pair, after, surface, c.sample, 1);
+  SurfaceAt of_segment = gap_at(here);
+  if (is_closest_of_group(after, c, here, count)) return of_segment;
+  SurfaceAt of_group = gap_at(closest_of(pair, after, surface, c.group, count));
   return of_group.distance < of_segment.distance - pair.motion.thresholds.touching ? of_group : of_segment;
 }
 
@@ -107,16 +116,28 @@ bool cross_after(const BodyPair& pair, const PlacedFeature& placed, const Candid
 
 }  // namespace
 
-double curving(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c, std::uint32_t number,
-               std::uint32_t count) {
+const PlacedFeature& FeatureAfter::place(const BodyPair& pair, const Feature& feature) {
+  if (placed_.feature == &feature) return placed_;
+  surface_ = nullptr;
+  return placed_ = placed_by(pair.motion.after(), feature);
+}
+
+const CurveFromSurface& FeatureAfter::seen_from(const BodyPair& pair, const AnalyticSurface& surface) {
+  if (surface_ == &surface) return curve_;
+  surface_ = &surface;
+  return curve_ = pair.seen_from(surface, placed_, {});
+}
+
+double curving(const BodyPair& pair, FeatureAfter& after, const PlacedFeature& placed, const Candidate& c,
+               std::uint32_t number, std::uint32_t count) {
   const ExactFace& face = pair.base.faces[number];
   const RelativeMotion& motion = pair.motion;
   const Feature& feature = *placed.feature;
   const Vector3d way = pair.moved(c.p, motion.during);
   if (way.squaredNorm() < motion.thresholds.slow * motion.thresholds.slow) return 0;
-  const PlacedFeature after = placed_by(motion.after(), feature);
+  after.place(pair, feature);
   if (!placed.is_arc() && face.surface->kind() == SurfaceKind::plane)  // the way itself turns, and nothing else
-    return taken_along(pair, way, face.surface->axis().dot(after.point(c.place) - c.p - way));
+    return taken_along(pair, way, face.surface->axis().dot(after.placed().point(c.place) - c.p - way));
   const SurfaceAt there = closest_gap(pair, after, c, number, count);
   const double linear = c.at.normal.dot(way);
   const auto gap_at = [&](const Vector3d& p) { return face.surface->at(p).distance - feature.radius_at(c.place.c); };

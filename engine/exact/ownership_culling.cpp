@@ -43,16 +43,16 @@ bool is_limited_by(const BodyPair& pair, const ExactEdge& edge, std::uint32_t fa
 }
 
 DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const AnalyticSurface& mine,
-                     const PlacedFeature& placed, const SampleBlock& block, const BlockDistances& distances) {
+                     const PlacedFeature& placed, const SampleBlock& block, std::span<const Measure> measures) {
   const RelativeMotion& motion = pair.motion;
   DistanceLead lead;
   bool some_before = false;
   bool some_free = false;
   pair.measure_all(pair.seen_from(other, placed, motion.last_twist), block, [&](std::uint32_t i, const Measure& m) {
-    lead.now[i] = m.distance - distances.distance[i];
-    lead.rule[i] = ownership_rule(distances.distance[i], m.distance, motion.thresholds.coincident);
+    lead.now[i] = m.distance - measures[i].distance;
+    lead.rule[i] = ownership_rule(measures[i].distance, m.distance, motion.thresholds.coincident);
     lead.by_rule[i] = lead.now[i] + (lead.rule[i] == OwnershipRule::by_last_motion ? m.change : 0);
-    const bool on_edge = distances.distance[i] > -motion.thresholds.coincident;
+    const bool on_edge = measures[i].distance > -motion.thresholds.coincident;
     const bool moves = on_edge || lead.rule[i] == OwnershipRule::by_last_motion;
     lead.other[i] = m.distance + (moves ? std::min(0.0, m.change) : 0.0);
     some_before = some_before || lead.rule[i] == OwnershipRule::by_last_motion;
@@ -66,8 +66,8 @@ DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const A
   if (some_free) {
     pair.measure_all(pair.seen_from(other, placed, motion.free_twist), block, [&](std::uint32_t i, const Measure& m) {
       if (lead.rule[i] != OwnershipRule::by_free_motion) return;
-      lead.by_rule[i] += m.change - distances.change[i];
-      lead.other[i] = std::min(lead.other[i], lead.now[i] + distances.distance[i] + m.change);
+      lead.by_rule[i] += m.change - measures[i].change;
+      lead.other[i] = std::min(lead.other[i], lead.now[i] + measures[i].distance + m.change);
     });
   }
   return lead;
@@ -76,7 +76,7 @@ DistanceLead lead_of(const BodyPair& pair, const AnalyticSurface& other, const A
 }  // namespace
 
 void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, const SampleBlock& block,
-                          std::uint32_t face, const BlockDistances& distances, std::span<double> gaps_ahead) {
+                          std::uint32_t face, std::span<const Measure> measures, std::span<double> gaps_ahead) {
   const std::uint32_t count = block.end - block.begin;
   VERISIM_ASSERT(gaps_ahead.size() >= count);
   const auto place = [&](std::uint32_t i) {
@@ -89,7 +89,7 @@ void cull_unowned_samples(const BodyPair& pair, const PlacedFeature& placed, con
   if (edge == nullptr) return;
   const auto& faces = pair.base.faces;
   const DistanceLead lead =
-      lead_of(pair, *faces[face_across(*edge, face)].surface, *faces[face].surface, placed, block, distances);
+      lead_of(pair, *faces[face_across(*edge, face)].surface, *faces[face].surface, placed, block, measures);
   // From a segment's middle to its end the lead changes by about half of its change to the next middle. The lead must
   // exceed twice that.
   const double enough = pair.motion.thresholds.lead_enough;

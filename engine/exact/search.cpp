@@ -1,6 +1,5 @@
 #include "engine/exact/search.hpp"
 
-#include "engine/exact/curving.hpp"
 #include "engine/exact/edge_crossing.hpp"
 #include "engine/exact/edge_ownership.hpp"
 #include "engine/exact/ownership_culling.hpp"
@@ -44,17 +43,16 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   }
   const std::uint32_t count = block.end - block.begin;
   const double* c = &pair_.mover.sample_c[block.begin];
-  BlockDistances distances;
   PerSample gaps_now;    // m, estimated
   PerSample gaps_ahead;  // m, likewise, at the end of the step without contact
   // A place as deep as this gives no row. Along a straight segment the place that is closest to a plane is the deepest.
   const double deepest = is_straight ? -pair_.base.options.spacing - kSlack : -kOutOfReach;
+  measures_begin_ = block.begin;
   bool any = false;
   const auto note = [&](std::uint32_t i, const Measure& m, double nearest_ahead) {
     const double radius = feature.radius_at(c[i]);
     const double nearest = nearest_of(m, feature.half_width, feature.radius_slope) - radius;
-    distances.distance[i] = m.distance;
-    distances.change[i] = m.change;
+    measures_[i] = m;
     const bool may_be_row = nearest < motion.margin && nearest > deepest;
     gaps_now[i] = nearest;
     gaps_ahead[i] = may_be_row ? std::min(nearest + m.change, nearest_ahead - radius) : kOutOfReach;
@@ -76,7 +74,7 @@ void Search::test_block(std::uint32_t r, std::uint32_t face) {
   cost_.samples += count;
   if (!any) return;
   if (feature.own_face == kNoFace && count > feature.group)
-    cull_unowned_samples(pair_, placed, block, face, distances, gaps_ahead);
+    cull_unowned_samples(pair_, placed, block, face, measures_, gaps_ahead);
   for (std::uint32_t i = 0; i < count; i += feature.group) {
     const std::uint32_t size = std::min(feature.group, count - i);
     reduce_group(placed, curve, block.begin + i, std::span(gaps_now).subspan(i, size),
@@ -166,7 +164,8 @@ bool Search::evaluate_segment(const PlacedFeature& placed, const CurveFromSurfac
   const double at_c = pair_.mover.sample_c[c.sample];
   const double at_s = pair_.mover.sample_s[c.sample];
   const Feature& feature = *placed.feature;
-  c.place = closest_place(curve, at_c, at_s, feature.half_width, feature.radius_slope);
+  c.place = closest_place(curve, at_c, at_s, feature.half_width, feature.radius_slope,
+                          &measures_[c.sample - measures_begin_]);
   const bool is_row = evaluate_candidate(placed, face, count, c);
   if (placed.is_arc() || feature.half_width == 0 || !is_plane(face)) return is_row;
   const Vector3d& n = pair_.base.faces[face].surface->axis();
@@ -298,7 +297,7 @@ void Search::add_group_ends(const PlacedFeature& placed, const CurveFromSurface&
       left -= share;
       end.weight *= share;
     }
-    add_row(placed, end, count, face, curving(pair_, placed, end, face, 0));
+    add_row(placed, end, count, face, curving(pair_, after_, placed, end, face, 0));
   }
   best.weight *= left;
 }
@@ -323,7 +322,7 @@ bool Search::is_back_facing(const SampleBlock& block, const Vector3d& normal) co
 
 /// Adds the row of a candidate that touches the face's surface, not a plane beside it.
 void Search::add_face_row(const PlacedFeature& placed, const Candidate& c, std::uint32_t count, std::uint32_t face) {
-  add_row(placed, c, count, face, curving(pair_, placed, c, face, count));
+  add_row(placed, c, count, face, curving(pair_, after_, placed, c, face, count));
 }
 
 /// Adds the row of a candidate that stands for `count` segments.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/exact/candidate.hpp"
+#include "engine/exact/curving.hpp"
 #include "engine/exact/near_pairs.hpp"
 #include "engine/exact/ownership_culling.hpp"
 
@@ -59,6 +60,8 @@ class Search {
   [[nodiscard]] double way_across(const PlacedFeature& placed, const Twist& twist) const;
   void add_along(const PlacedFeature& placed, const CurveFromSurface& curve, Candidate& best, std::uint32_t count,
                  std::uint32_t face);
+  [[nodiscard]] bool lies_beyond(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                                 const Measure& here, std::uint32_t count) const;
   [[nodiscard]] Candidate closest_of_group(const PlacedFeature& placed, const CurveFromSurface& curve,
                                            std::uint32_t group, std::uint32_t count) const;
   [[nodiscard]] static double part_beside(double turn, double of_one);
@@ -92,7 +95,10 @@ class Search {
   RowList& rows_;
   SearchCost& cost_;
   double depth_max_ = 0;
-  PlacedFeature placed_{};  ///< of the block that is tested
+  PlacedFeature placed_{};                    ///< of the block that is tested
+  FeatureAfter after_;                        ///< of its last row
+  std::array<Measure, kBlockSize> measures_;  ///< of its samples, from the first one on
+  std::uint32_t measures_begin_ = 0;
 };
 
 /// The feature of a block in the coordinates of the base. Blocks are tested one after the other, each against several

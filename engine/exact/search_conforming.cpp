@@ -1,6 +1,5 @@
 // Rows of what fits closely, beside its closest place (conforming_normals.hpp).
 #include "engine/exact/conforming_normals.hpp"
-#include "engine/exact/curving.hpp"
 #include "engine/exact/search_class.hpp"
 
 namespace verisim::exact {
@@ -55,6 +54,7 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   if (!placed.is_arc() || placed.feature->own_face != kNoFace) return;
   const RelativeMotion& motion = pair_.motion;
   const Measure here = measure_at(curve, best.place);
+  if (lies_beyond(placed, curve, best, here, count)) return;
   const double clearance = clearance_along(placed, here, best);
   if (!(clearance > kFlush)) return;
   const double last = way_across(placed, motion.last_twist);
@@ -69,6 +69,22 @@ void Search::add_along(const PlacedFeature& placed, const CurveFromSurface& curv
   if (!add_beside(placed, curve, closest, of_one, count, face)) return;
   const double away = std::abs(2 * half * (best.sample - best.group) + best.place.t - closest.place.t);
   best.weight *= std::min(1.0, part_beside(away, of_one));
+}
+
+/// Is the closest place of an arc, as it is now, beyond a group's end? It is where the gap still falls there. Most
+/// groups of an arc end here: closest_of_group costs more.
+/// @param here  at the candidate
+bool Search::lies_beyond(const PlacedFeature& placed, const CurveFromSurface& curve, const Candidate& best,
+                         const Measure& here, std::uint32_t count) const {
+  const double half = placed.feature->half_width;
+  const double sense = here.slope > 0 ? -1 : 1;  // in which the gap falls
+  const std::uint32_t last = best.group + (sense > 0 ? count - 1 : 0);
+  const bool is_at_end = best.sample == last && sense * best.place.t >= half;
+  const Measure end =
+      is_at_end
+          ? here
+          : measure_at(curve, place_at(true, pair_.mover.sample_c[last], pair_.mover.sample_s[last], sense * half));
+  return sense * end.slope < -half * end.bend;
 }
 
 /// The closest place of a group as it is now: the candidate, which is closest at the end of the step without contact,
@@ -128,7 +144,7 @@ bool Search::add_beside(const PlacedFeature& placed, const CurveFromSurface& cur
       std::optional<Candidate> c = candidate_beside(placed, closest, sense * turn, face);
       if (!c || !(std::min(c->gap, c->gap_ahead) < kSlack)) continue;
       c->weight *= part_beside(turn, of_one);
-      add_row(placed, *c, count, face, curving(pair_, placed, *c, face, 0));
+      add_row(placed, *c, count, face, curving(pair_, after_, placed, *c, face, 0));
       any = true;
     }
   }
