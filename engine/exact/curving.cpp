@@ -48,20 +48,22 @@ double of_passing(const BodyPair& pair, const PlacedFeature& placed, const Candi
 }
 
 /// The place of `count` segments from `first` on that is closest to a face.
-Place closest_of(const BodyPair& pair, FeatureAfter& after, const AnalyticSurface& surface, std::uint32_t first,
+Place closest_of(const BodyPair& pair, const Feature& feature, const CurveFromSurface& seen, std::uint32_t first,
                  std::uint32_t count) {
-  const Feature& feature = *after.placed().feature;
-  const Place middle = place_at(after.placed().is_arc(), pair.mover.sample_c[first], pair.mover.sample_s[first],
+  const Place middle = place_at(seen.is_arc, pair.mover.sample_c[first], pair.mover.sample_s[first],
                                 feature.half_width * (static_cast<double>(count) - 1));
-  return closest_place(after.seen_from(pair, surface), middle.c, middle.s, count * feature.half_width,
-                       feature.radius_slope);
+  return closest_place(seen, middle.c, middle.s, count * feature.half_width, feature.radius_slope);
 }
 
-/// Is there no closer place of the candidate's group, to which the place of its segment leads?
-bool is_closest_of_group(const FeatureAfter& after, const Candidate& c, const Place& at, std::uint32_t count) {
-  const double half = after.placed().feature->half_width;
-  if (std::abs(at.t) < half) return true;
-  return c.sample == c.group + (at.t > 0 ? count - 1 : 0);
+/// Is the closest place of the candidate's segment that of its group: does the gap rise on both sides of it? Where it
+/// has a maximum, the group's other end may be closer.
+bool is_closest_of_group(const Feature& feature, const CurveFromSurface& seen, const Candidate& c, const Place& at,
+                         std::uint32_t count) {
+  if (std::abs(at.t) < feature.half_width) return true;
+  if (c.sample != c.group + (at.t > 0 ? count - 1 : 0)) return false;
+  double bend = 0;
+  with_measure(seen, [&](auto&& measure_at) { bend = measure_at(at.c, at.s).bend; });
+  return bend > 0;
 }
 
 /// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
@@ -76,10 +78,11 @@ SurfaceAt closest_gap(const BodyPair& pair, FeatureAfter& after, const Candidate
     return at;
   };
   if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
-  const Place here = closest_of(pair, after, surface, c.sample, 1);
+  const CurveFromSurface& seen = after.seen_from(pair, surface);
+  const Place here = closest_of(pair, *placed.feature, seen, c.sample, 1);
   SurfaceAt of_segment = gap_at(here);
-  if (is_closest_of_group(after, c, here, count)) return of_segment;
-  SurfaceAt of_group = gap_at(closest_of(pair, after, surface, c.group, count));
+  if (is_closest_of_group(*placed.feature, seen, c, here, count)) return of_segment;
+  SurfaceAt of_group = gap_at(closest_of(pair, *placed.feature, seen, c.group, count));
   return of_group.distance < of_segment.distance - pair.motion.thresholds.touching ? of_group : of_segment;
 }
 
