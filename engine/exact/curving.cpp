@@ -119,10 +119,10 @@ bool cross_after(const BodyPair& pair, const PlacedFeature& placed, const Candid
 
 }  // namespace
 
-const PlacedFeature& FeatureAfter::place(const BodyPair& pair, const Feature& feature) {
-  if (placed_.feature == &feature) return placed_;
+void FeatureAfter::place(const BodyPair& pair, const Feature& feature) {
+  if (placed_.feature == &feature) return;
   surface_ = nullptr;
-  return placed_ = placed_by(pair.motion.after(), feature);
+  placed_ = placed_by(pair.motion.after(), feature);
 }
 
 const CurveFromSurface& FeatureAfter::seen_from(const BodyPair& pair, const AnalyticSurface& surface) {

@@ -6,11 +6,11 @@
 
 namespace verisim::exact {
 
-/// Where a feature is at the end of the step if the bodies move as they are taken to (RelativeMotion::during), and the
-/// faces that see it there: found once for the rows of a block. Of one pair of bodies.
+/// A feature at the end of the step, if the bodies move as they are taken to (RelativeMotion::during), and how a face
+/// sees it there: found once for the rows of a block. Of one pair of bodies.
 class FeatureAfter {
  public:
-  const PlacedFeature& place(const BodyPair& pair, const Feature& feature);
+  void place(const BodyPair& pair, const Feature& feature);
   /// The feature that was placed last.
   [[nodiscard]] const PlacedFeature& placed() const { return placed_; }
   const CurveFromSurface& seen_from(const BodyPair& pair, const AnalyticSurface& surface);
