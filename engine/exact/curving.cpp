@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/exact/edge_crossing.hpp"
+#include "engine/exact/edge_ownership.hpp"
 
 namespace verisim::exact {
 namespace {
@@ -67,23 +68,34 @@ bool is_closest_of_group(const Feature& feature, const CurveFromSurface& seen, c
 }
 
 /// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
-/// If the group, of `count` segments, is nearer by more than what touches anyway, that of the group.
+/// If the group, of `count` segments, is nearer by more than what touches anyway, that of the group. A place that is
+/// nearer by so much than the candidate's own has to be on the face: beyond its border there is nothing to touch.
 SurfaceAt closest_gap(const BodyPair& pair, FeatureAfter& after, const Candidate& c, std::uint32_t face,
                       std::uint32_t count) {
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
   const PlacedFeature& placed = after.placed();
+  const double touching = pair.motion.thresholds.touching;
   const auto gap_at = [&](const Place& place) {
     SurfaceAt at = surface.at(placed.point(place));
     at.distance -= placed.feature->radius_at(place.c);
     return at;
   };
-  if (count == 0 || placed.feature->half_width == 0) return gap_at(c.place);
+  SurfaceAt own = gap_at(c.place);
+  if (count == 0 || placed.feature->half_width == 0) return own;
   const CurveFromSurface& seen = after.seen_from(pair, surface);
-  const Place here = closest_of(pair, *placed.feature, seen, c.sample, 1);
-  SurfaceAt of_segment = gap_at(here);
-  if (is_closest_of_group(*placed.feature, seen, c, here, count)) return of_segment;
-  SurfaceAt of_group = gap_at(closest_of(pair, *placed.feature, seen, c.group, count));
-  return of_group.distance < of_segment.distance - pair.motion.thresholds.touching ? of_group : of_segment;
+  Place nearest = closest_of(pair, *placed.feature, seen, c.sample, 1);
+  SurfaceAt at = gap_at(nearest);
+  if (!is_closest_of_group(*placed.feature, seen, c, nearest, count)) {
+    const Place of_group = closest_of(pair, *placed.feature, seen, c.group, count);
+    const SurfaceAt there = gap_at(of_group);
+    if (there.distance < at.distance - touching) {
+      nearest = of_group;
+      at = there;
+    }
+  }
+  const bool is_off =
+      at.distance < own.distance - touching && !is_on_face(pair.base, face, surface.foot(placed.point(nearest)));
+  return is_off ? own : at;
 }
 
 double curving_of_lines(const BodyPair& pair, const PlacedFeature& placed, const PlacedFeature& after,

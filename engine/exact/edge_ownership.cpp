@@ -37,26 +37,6 @@ bool is_behind(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, dou
   return distance < -more && edge.limits_face_at(face, p, 0);
 }
 
-/// True if a point of a face's surface lies within the face.
-bool is_on_face(const ExactBody& body, std::uint32_t face, const Vector3d& foot) {
-  if (body.faces[face].trim->is_whole()) return true;
-  const Trim::Answer answer = body.faces[face].trim->find(*body.faces[face].surface, foot);
-  if (answer.where != Trim::Where::border) return answer.where == Trim::Where::inside;
-  for (const std::uint32_t e : answer.edges) {
-    const ExactEdge& edge = body.edges[e];
-    if (edge.convexity == Convexity::smooth) {
-      if (is_beyond(edge, face, foot)) return false;
-    } else {
-      const SurfaceAt there = body.faces[face_across(edge, face)].surface->at(foot);
-      if (!edge.limits_face_at(face, foot, there.distance)) continue;
-      const bool is_off =
-          edge.convexity == Convexity::convex ? there.distance > 0 : is_behind(edge, face, foot, there.distance, 0);
-      if (is_off && !is_hidden(body, face, answer.edges, e, foot, there)) return false;
-    }
-  }
-  return true;
-}
-
 /// True if the curve ends at the place, at a concave corner: a convex one is a feature of its own.
 bool ends_at_concave_corner(const BodyPair& pair, const PlacedFeature& placed, const Candidate& c) {
   const Feature& feature = *placed.feature;
@@ -220,6 +200,25 @@ double kept_share(const BodyPair& pair, const PlacedFeature& placed, const Exact
 }
 
 }  // namespace
+
+bool is_on_face(const ExactBody& base, std::uint32_t face, const Vector3d& foot) {
+  if (base.faces[face].trim->is_whole()) return true;
+  const Trim::Answer answer = base.faces[face].trim->find(*base.faces[face].surface, foot);
+  if (answer.where != Trim::Where::border) return answer.where == Trim::Where::inside;
+  for (const std::uint32_t e : answer.edges) {
+    const ExactEdge& edge = base.edges[e];
+    if (edge.convexity == Convexity::smooth) {
+      if (is_beyond(edge, face, foot)) return false;
+    } else {
+      const SurfaceAt there = base.faces[face_across(edge, face)].surface->at(foot);
+      if (!edge.limits_face_at(face, foot, there.distance)) continue;
+      const bool is_off =
+          edge.convexity == Convexity::convex ? there.distance > 0 : is_behind(edge, face, foot, there.distance, 0);
+      if (is_off && !is_hidden(base, face, answer.edges, e, foot, there)) return false;
+    }
+  }
+  return true;
+}
 
 bool is_hidden(const ExactBody& base, std::uint32_t face, std::span<const std::uint32_t> edges, std::uint32_t e,
                const Vector3d& p, const SurfaceAt& across) {

@@ -19,6 +19,9 @@ inline constexpr double kThinnest = 1e-5;
 [[nodiscard]] bool is_hidden(const ExactBody& base, std::uint32_t face, std::span<const std::uint32_t> edges,
                              std::uint32_t e, const Vector3d& p, const SurfaceAt& across);
 
+/// True if a point of a face's surface lies within the face.
+[[nodiscard]] bool is_on_face(const ExactBody& base, std::uint32_t face, const Vector3d& foot);
+
 /// Which distances are compared at a convex edge.
 ///   by_position     those of the point as it is: the point is inside both faces
 ///   by_free_motion  those after the step without contact: the point is outside both, and the face that it would pass

@@ -199,16 +199,17 @@ class PartImporter {
 bool ExactEdge::limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const {
   if (extent == Extent::all) return true;
   const std::size_t side = faces[0] == face ? 0 : 1;
+  const double more = distance < 0 ? beyond_end : 0;
   if (has_sharp_corner[side])
     for (std::size_t end = 0; end < 2; ++end)
-      if (sharp_corner[side][end].dot(p - ends[end]) < 0) return false;
+      if (sharp_corner[side][end].dot(p - ends[end]) < -more) return false;
   const Vector3d d = p - center;
   const double a = direction.dot(d);
   const double b = perpendicular.dot(d);
   const bool is_line = extent == Extent::line;
   const double beyond = is_line ? std::abs(a) - half : half * std::sqrt(a * a + b * b) - a;
   const std::size_t end = (is_line ? a : b) > 0 ? 1 : 0;
-  return beyond <= (distance < 0 ? beyond_end : 0) || limits_beyond_end[side][end];
+  return beyond <= more || limits_beyond_end[side][end];
 }
 
 ExactBody::ExactBody(std::span<const Part> parts, const BodyOptions& wanted) : options(wanted) {

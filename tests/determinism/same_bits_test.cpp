@@ -42,7 +42,7 @@ const std::map<std::string, Golden> kGolden = {
     {"pin_in_hole", {"ce6de44c95101186", 738}},        {"pin_in_hole_implicit", {"e6aafab26ce05df8", 737}},
     {"pin_restored", {"e57107ae6692dc73", 736, 736}},  {"pin_restored_implicit", {"a15dd743113dc650", 734, 734}},
     {"pin_blended", {"bb6e5d426e6739c8", 1045, 1045}}, {"pin_exact", {"689fb81d11e95d7f", 283}},
-    {"cone_exact", {"64c0a3a02ad0aff7", 91}},          {"two_pins_exact", {"d664a3d62eb5bac3", 247}},
+    {"cone_exact", {"f80ab4a892bbfc24", 91}},          {"two_pins_exact", {"d664a3d62eb5bac3", 247}},
     {"falling_boxes", {"f26248a99fe29f1a", 440}},      {"falling_boxes_implicit", {"4764cb4380e04389", 440}},
 };
 

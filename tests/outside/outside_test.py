@@ -42,16 +42,19 @@ class OutsideTest(SceneTest):
         self.check_cylinder()
 
     def test_cylinders_that_fall_into_a_groove_overlap_by_micrometres(self):
-        for voxelsize in ((0.0005, 0.001, 0.002, 0.004) if LONG else (0.002,)):
-            for seed in (range(24) if LONG else (1, 4, 7, 8, 12, 19)):  # those that were lost
-                with self.subTest(seed=seed, voxelsize=voxelsize):
-                    self.check_cylinder(voxelsize=voxelsize, duration=0.6, **self.random_drop(seed))
+        # Those that were lost. A step of 3 was to end on a place of the plate that the groove has cut away: its rim was
+        # pushed where it touched nothing, and gained 0.5 % of energy.
+        wrong_once = ((1, 0.002), (4, 0.002), (7, 0.002), (8, 0.002), (12, 0.002), (19, 0.002), (3, 0.001))
+        every = [(seed, voxelsize) for voxelsize in (0.0005, 0.001, 0.002, 0.004) for seed in range(24)]
+        for seed, voxelsize in every if LONG else wrong_once:
+            with self.subTest(seed=seed, voxelsize=voxelsize):
+                self.check_cylinder(voxelsize=voxelsize, duration=0.6, **self.random_drop(seed))
 
     def test_prisms_fit_into_their_holes(self):
         clearances = (5e-6, 2e-5, 1e-4) if LONG else (2e-5,)
         for c in clearances:
             of_pin = self.largest_force(self.run_scene("prism_entry.lua", "peg", n=0, c=c))
-            for n in (range(3, 13) if LONG else (4, 8)):
+            for n in (range(3, 13) if LONG else (3, 8)):
                 with self.subTest(n=n, c=c):
                     recorded = self.run_scene("prism_entry.lua", "peg", n=n, c=c)
                     overlap = ruler.overlap_of_prism_and_hole(recorded.pose, n, c)
@@ -73,8 +76,9 @@ class OutsideTest(SceneTest):
     def test_prisms_enter_however_a_hand_misjudges_their_holes(self):
         # 0 and 60 came down on a corner of the hole with the edge between two lead-in planes, and sank by 5.8 and 1.8 um:
         # the corner was an end of an edge that no face held. 1 and 3 slid down a corner with an edge of theirs, and each
-        # of the hole's two edges there ended a nanometre short of it in turn. 49 turned across an edge within a step.
-        for seed in range(90) if LONG else (0, 1, 2, 3, 10, 49, 60):
+        # of the hole's two edges there ended a nanometre short of it in turn; so did 54 and 84, where the corner is sharp
+        # (8.8 um). 49 turned across an edge within a step.
+        for seed in range(90) if LONG else (0, 1, 2, 3, 10, 49, 54, 60, 84):
             settings = self.misjudged(seed)
             with self.subTest(seed=seed, **settings):
                 recorded = self.run_scene("prism_entry.lua", "peg", seed=seed, **settings)

@@ -159,7 +159,7 @@ class Models(RunFileTest):
         self.assertEqual(self.events("coupling"), [])
         self.run_scene("nut.lua", "nut", brep="true", **THREAD, hybrid="exact", integrator="implicit", voxelsize=0.0005, turns=0.42,
                        sign=-1)
-        self.assertIn("use smaller voxels", self.events("energy")[0])
+        self.assertIn("use smaller voxels", self.events("overlap")[0])
 
     def test_pairs_of_meshes_go_in_exactly_or_say_that_they_are_not_exact(self):
         holes = {"round": ("round_hole_8mm_subdiv_3x", "round_peg_8mm_loose round_peg_8mm_tight"),

@@ -246,9 +246,10 @@ void judge_drops(const std::vector<drops::Kind>& body_kinds, const std::vector<d
   }
 }
 
-// Rings that slide fast along an edge or a cone of nearly their own radius were 61 and 73 um deep once.
+// Rings that slide fast along an edge or a cone of nearly their own radius were 61 and 73 um deep once. A cone that
+// fell through a hole was pushed by the hole's rim where the rim passed beyond its side, and gained 1.1 % of energy.
 TEST(RandomDrops, AreRecordedAsDeepAsTheyAre) {
-  judge_drops(drops::body_kinds(), drops::seat_kinds(), seeds(200, 2000), {894, 1518});
+  judge_drops(drops::body_kinds(), drops::seat_kinds(), seeds(200, 2000), {484, 894, 1518});
 }
 
 // What lies beyond a thin wall, or beside a border, was taken for a place millimetres deep: a coin was thrown at 70

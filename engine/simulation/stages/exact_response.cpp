@@ -39,11 +39,13 @@ std::string text_of_rounding(const World& world, const Note& note) {
 }
 
 std::string text_of_overlap(const World& world, const Note& note) {
+  const bool put = note.b > 0;
   return fmt::format(
-      "'{}' and '{}' were put inside of each other, by {:.3g} mm or more: their contacts move them apart, {:g} m/s "
-      "fast "
-      "at most, and give no energy; put them apart",
-      world.bodies[note.first].name, world.bodies[note.second].name, 1e3 * note.a, exact::ConvexStep::kPushOut);
+      "'{}' and '{}' {}, by {:.3g} mm or more: their contacts move them apart, {:g} m/s fast at most, and give no "
+      "energy; {}",
+      world.bodies[note.first].name, world.bodies[note.second].name,
+      put ? "were put inside of each other" : "came inside of each other where no precise contact told of it",
+      1e3 * note.a, exact::ConvexStep::kPushOut, put ? "put them apart" : "use smaller voxels, or a smaller timestep");
 }
 
 /// Bound of the velocity of any point of a body [m/s].
@@ -121,7 +123,8 @@ void ExactResponse::tell(const World& world, Notes& notes) {
                .text = text_of_overlap,
                .first = first,
                .second = second,
-               .a = of.depth_max});
+               .a = of.depth_max,
+               .b = of.was_put ? 1.0 : 0.0});
   }
 }
 
@@ -410,6 +413,7 @@ void ExactResponse::read_rows(const World& world, std::size_t l, std::size_t fir
     const bool late = solver_->is_late(first_row + i);
     const bool began_inside = solver_->began_inside(first_row + i) && -rows[i].gap <= of.depth_max;  // it tells of that
     of.late = of.late || (late && (of.calm < kCalm || began_inside));
+    of.was_put = of.was_put || (late && of.calm < kCalm);
     if (!late) of.overlap = std::max(of.overlap, -rows[i].gap);
     // A row that pushed and is free after the rebound has no force left, but two opposite ones at two places.
     const Vector3d rebound = solver_->rebound(first_row + i) * rows[i].normal;

@@ -81,6 +81,7 @@ class ExactResponse {
     exact::ExactLink* search = nullptr;  ///< null: none in this frame, or certainly without rows
     bool searched = false;
     bool late = false;       ///< is any row, in this frame, of bodies that have not been calm since?
+    bool was_put = false;    ///< is it one of these bodies?
     bool told = false;       ///< that they overlap
     bool idle = false;       ///< since the last frame's begin nothing has been found: all but calm and told is as made
     std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
