@@ -225,10 +225,9 @@ bool may_cross_edge(const BodyPair& pair, const PlacedFeature& placed, const Exa
   return mixed < (pair.motion.margin + kRounding) * length && mixed > -(pair.base.options.spacing + kRounding) * length;
 }
 
-bool lies_already(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge, const Candidate& c) {
+bool lies_already(const BodyPair& pair, const ExactEdge& edge, const Candidate& c) {
   const std::array<SurfaceAt, 2> at{pair.base.faces[edge.faces[0]].surface->at(c.p),
                                     pair.base.faces[edge.faces[1]].surface->at(c.p)};
-  if (lies_with_its_end(pair, placed, c, edge, at[0], at[1])) return true;
   const auto lies_beside = [&](std::size_t side) {
     const Vector3d foot = c.p - at[side].distance * at[side].normal;
     return lies_across(pair, edge.faces[side], foot, c, edge.faces[1 - side]);

@@ -28,10 +28,9 @@ namespace verisim::exact {
 [[nodiscard]] bool cross_edge(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
                               const std::array<Place, 2>& near, Candidate& c);
 
-/// True if a crossing that some motion leads to is held where it is now: an edge ends there on the plane that it leaves
-/// faster, or its place lies on a third face, that can push it. The motion without contact would lead it through that.
+/// True if a crossing that some motion leads to is held where it is now: its place lies on a third face, that can push
+/// it. The motion without contact would lead it through that.
 /// @param c  place, p and sample are those of the crossing, as they are now
-[[nodiscard]] bool lies_already(const BodyPair& pair, const PlacedFeature& placed, const ExactEdge& edge,
-                                const Candidate& c);
+[[nodiscard]] bool lies_already(const BodyPair& pair, const ExactEdge& edge, const Candidate& c);
 
 }  // namespace verisim::exact

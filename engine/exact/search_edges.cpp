@@ -111,7 +111,7 @@ bool Search::cross_segment(When when, const ExactEdge& edge, std::uint32_t count
     const RelativeMotion& motion = pair_.motion;
     c.p = placed_.point(c.place);
     c.gap -= c.normal.dot(pair_.moved(c.p, when == When::ahead ? motion.free_twist : motion.during));
-    if (!(c.gap > motion.thresholds.coincident) || lies_already(pair_, placed_, edge, c)) return false;
+    if (!(c.gap > motion.thresholds.coincident) || lies_already(pair_, edge, c)) return false;
   }
   if (!is_near(placed_, count, c)) return false;
   c.weight *= share_of_crossing(c, 2 * placed_.feature->half_width * count);

@@ -76,9 +76,9 @@ class OutsideTest(SceneTest):
     def test_prisms_enter_however_a_hand_misjudges_their_holes(self):
         # 0 and 60 came down on a corner of the hole with the edge between two lead-in planes, and sank by 5.8 and 1.8 um:
         # the corner was an end of an edge that no face held. 1 and 3 slid down a corner with an edge of theirs, and each
-        # of the hole's two edges there ended a nanometre short of it in turn; so did 54 and 84, where the corner is sharp
-        # (8.8 um). 49 turned across an edge within a step.
-        for seed in range(90) if LONG else (0, 1, 2, 3, 10, 49, 54, 60, 84):
+        # of the hole's two edges there ended a nanometre short of it in turn; so did 84, where the corner is sharp
+        # (8.8 um). 49 turned across an edge within a step; 24 did with a corner on the hole's wall.
+        for seed in range(90) if LONG else (0, 1, 2, 3, 10, 24, 49, 60, 84):
             settings = self.misjudged(seed)
             with self.subTest(seed=seed, **settings):
                 recorded = self.run_scene("prism_entry.lua", "peg", seed=seed, **settings)
