@@ -69,7 +69,8 @@ bool is_closest_of_group(const Feature& feature, const CurveFromSurface& seen, c
 
 /// The smallest gap to a face, and the normal there, of the candidate's segment; with a count of 0 that of its place.
 /// If the group, of `count` segments, is nearer by more than what touches anyway, that of the group. A place that is
-/// nearer by so much than the candidate's own has to be on the face: beyond its border there is nothing to touch.
+/// nearer by so much than the candidate's own has to be on the face: beyond its border there is nothing to touch, and
+/// at the border edges cross.
 SurfaceAt closest_gap(const BodyPair& pair, FeatureAfter& after, const Candidate& c, std::uint32_t face,
                       std::uint32_t count) {
   const AnalyticSurface& surface = *pair.base.faces[face].surface;

@@ -81,8 +81,8 @@ struct ExactEdge {
 
   /// True if the edge limits `face` near the point p: p lies within the extent, or limits_beyond_end holds. At a corner
   /// with a concave edge the material is inside of either of two faces; a point that is inside of the face across
-  /// (distance < 0) counts as within up to `beyond_end` beyond the end. Behind the other edge of a sharp corner it does
-  /// not limit.
+  /// (distance < 0) counts as within up to `beyond_end` beyond the end, and behind the other edge of a sharp corner.
+  /// Farther behind that one it does not limit.
   /// @param distance  of p from the face across the edge [m]
   [[nodiscard]] bool limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const;
 

@@ -3,7 +3,8 @@
 //
 // Bodies may begin inside of each other, or be put there. No motion brought them there, so there is no energy in it:
 // until they are apart, or touch as others do, their contacts move them apart with ConvexStep::kPushOut at most and
-// give them no velocity. An event of kind "overlap" names the pair.
+// give them no velocity. An event of kind "overlap" names the pair. It says otherwise of those that came there
+// between contacts, where voxels gave way and told precise contacts nothing.
 #pragma once
 
 #include <memory>
@@ -81,7 +82,7 @@ class ExactResponse {
     exact::ExactLink* search = nullptr;  ///< null: none in this frame, or certainly without rows
     bool searched = false;
     bool late = false;       ///< is any row, in this frame, of bodies that have not been calm since?
-    bool was_put = false;    ///< is it one of these bodies?
+    bool was_put = false;    ///< is it late because they began or were put so, and not in the course of contact?
     bool told = false;       ///< that they overlap
     bool idle = false;       ///< since the last frame's begin nothing has been found: all but calm and told is as made
     std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
