@@ -273,8 +273,8 @@ TEST(RandomDrops, OfInnerCornersAndTipsAreRecordedAsDeepAsTheyAre) {
   judge_drops(drops::cornered_kinds(), seats, seeds(38, 760), {130});
 }
 
-// The part of a round body that is nearest to a face may be cut away. Of the first 330, 7 are beyond the goal: caps of
-// balls gain 1 to 14 % of energy (5), and two bodies are 75 and 161 um deep.
+// The part of a round body that is nearest to a face may be cut away. Of the first 330, 6 are beyond the goal: caps of
+// balls gain 1 to 14 % of energy (4), and two bodies are 67 and 160 um deep.
 TEST(RandomDrops, OfCutRoundsAtRimsAreRecordedAsDeepAsTheyAre) {
   const Seeds asked = seeds(60, 600);
   const std::vector<Outcome> outcomes =
