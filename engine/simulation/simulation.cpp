@@ -52,6 +52,7 @@ void Simulation::prepare() {
     if (neighbours.missed_some()) neighbours.make_room(self.world);
     self.look_around();
   }
+  self.stages.exact.look_inside(self.world, self.stages.methods, self.notes);
 }
 
 std::size_t Simulation::prepare_all() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "tests/simulation/hybrid_scenes.hpp"
 #include "tests/support/random_inputs.hpp"
@@ -88,6 +89,71 @@ TEST(Overlap, ByASetPoseIsLikeOneAtTheBeginning) {
   EXPECT_LE(found.fastest, kPushOut);
   ASSERT_EQ(found.overlaps.size(), 1U);
   EXPECT_NE(found.overlaps[0].text.find("were put inside"), std::string::npos) << found.overlaps[0].text;
+}
+
+/// How deep the surface of a cube reaches into the plate of cube_in_plate(size, …) [m]; <= 0: it does not.
+double depth_of_cube(const Pose& X_WB, double edge, double size) {
+  double depth = -1;
+  constexpr int kSteps = 40;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-0.5, 0.5}) {
+          Vector3d p;
+          p[axis] = side;
+          p[(axis + 1) % 3] = static_cast<double>(i) / kSteps - 0.5;
+          p[(axis + 2) % 3] = static_cast<double>(j) / kSteps - 0.5;
+          const Vector3d q = X_WB * Vector3d(edge * p);
+          const Vector3d within(1.5 * size - std::abs(q.x()), 1.5 * size - std::abs(q.y()),
+                                0.5 * size - std::abs(q.z() + 0.5 * size));
+          depth = std::max(depth, within.minCoeff());
+        }
+  return depth;
+}
+
+// A row is of features as near as a voxel. What lay deeper was told when it had fallen as far as the plate's other
+// side, and a cube that kept its place never.
+TEST(Overlap, WithNoFeatureNearAnotherIsToldAtTheBeginning) {
+  int deep = 0;
+  for (const std::uint64_t seed : seeds(24)) {
+    Inputs in(seed);
+    const double size = std::pow(10, in.between(-2.5, -0.5)), small = size * in.between(0.2, 0.8);
+    Scene scene = cube_in_plate(size, -3, Quaterniond::Identity(), 1e-3);
+    scene.bodies[kBox] = scenes::body_of("box", *scenes::solid(Solid::Kind::box, {small, small, small}), size / 20);
+    scene.bodies[kBox].X_WB = {
+        {in.between(-1.6, 1.6) * size, in.between(-1.6, 1.6) * size, in.between(-1.2, 0.6) * size}, in.rotation()};
+    const double depth = depth_of_cube(scene.bodies[kBox].X_WB, small, size);
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << depth << " m, edge " << small);
+    Simulation simulation(std::move(scene), {});
+    std::vector<Event> overlaps;
+    for (const Event& event : simulation.events())
+      if (event.kind == "overlap") overlaps.push_back(event);
+    const double voxel = size / 20;
+    EXPECT_TRUE(depth > 0 || overlaps.empty()) << (overlaps.empty() ? "" : overlaps[0].text);
+    if (depth < 4 * voxel) continue;
+    ++deep;
+    ASSERT_EQ(overlaps.size(), 1U);
+    double told = 0;
+    ASSERT_EQ(
+        std::sscanf(overlaps[0].text.c_str(), "'plate' and 'box' were put inside of each other, by %lf mm", &told), 1);
+    EXPECT_LE(1e-3 * told, depth + voxel / 2);  // samples stand apart
+    EXPECT_GE(1e-3 * told, std::min(depth, 6 * voxel) - 3 * voxel);
+  }
+  EXPECT_GE(deep, 5);
+}
+
+TEST(Overlap, WithNoFeatureNearAnotherIsToldAfterASetPose) {
+  Scene scene = cube_in_plate(0.05, -1, Quaterniond::Identity(), 1e-3);
+  scene.bodies[kBox] = scenes::body_of("box", *scenes::solid(Solid::Kind::sphere, {0.01}), 0.0025);
+  scene.bodies[kBox].X_WB.position.z() = 0.011;
+  Simulation simulation(std::move(scene), {});
+  simulation.step();
+  simulation.prepare();
+  EXPECT_TRUE(simulation.events().empty() || simulation.events().back().kind != "overlap");
+  simulation.set_body_pose(kBox, {{0, 0, -0.025}, Quaterniond::Identity()});
+  simulation.prepare();
+  ASSERT_FALSE(simulation.events().empty());
+  EXPECT_EQ(simulation.events().back().kind, "overlap");
 }
 
 TEST(Overlap, IsNotToldOfWhatTouches) {

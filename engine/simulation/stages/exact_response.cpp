@@ -6,6 +6,7 @@
 
 #include "engine/base/cholesky.hpp"
 #include "engine/base/error.hpp"
+#include "engine/contact/depth_inside.hpp"
 #include "engine/simulation/stages/groups.hpp"
 
 namespace verisim {
@@ -71,6 +72,7 @@ Bounds box_of(const exact::ExactBody& body) {
 void ExactResponse::add_link(const World& world, const PairMethods& methods, std::size_t l) {
   VERISIM_ASSERT(l == links_.size());
   links_.emplace_back();
+  some_are_new_ = true;
   if (!methods.is_precise(l)) return;
   for (const std::size_t body : {world.links[l].first, world.links[l].second})
     bodies_[body].box_B = box_of(*world.bodies[body].exact);
@@ -103,7 +105,35 @@ void ExactResponse::solve(const World& world, const Neighbours& neighbours, cons
 
 void ExactResponse::forget(const World& world, std::size_t body) {
   for (std::size_t l = 0; l < links_.size(); ++l)
-    if (world.links[l].first == body || world.links[l].second == body) links_[l].calm = 0;
+    if (world.links[l].first == body || world.links[l].second == body) {
+      links_[l].calm = 0;
+      links_[l].is_new = some_are_new_ = true;
+    }
+}
+
+void ExactResponse::look_inside(const World& world, const PairMethods& methods, Notes& notes) {
+  if (!std::exchange(some_are_new_, false)) return;
+  for (const std::size_t l : world.near_links) {
+    OfLink& of = links_[l];
+    if (of.told || !of.is_new || !methods.is_precise(l)) continue;
+    const Body &a = world.bodies[world.links[l].first], &b = world.bodies[world.links[l].second];
+    const double depth = depth_inside(*a.voxels, *b.voxels, a.rigid.pose().inverse() * b.rigid.pose());
+    of.was_put = of.was_put || depth > 0;
+    if (depth > 0) note_overlap(world, l, depth, notes);
+  }
+  for (OfLink& of : links_) of.is_new = false;
+}
+
+void ExactResponse::note_overlap(const World& world, std::size_t l, double depth, Notes& notes) {
+  OfLink& of = links_[l];
+  of.told = true;
+  notes.add({.time = world.time(),
+             .kind = "overlap",
+             .text = text_of_overlap,
+             .first = world.links[l].first,
+             .second = world.links[l].second,
+             .a = depth,
+             .b = of.was_put ? 1.0 : 0.0});
 }
 
 void ExactResponse::tell(const World& world, Notes& notes) {
@@ -114,17 +144,7 @@ void ExactResponse::tell(const World& world, Notes& notes) {
     notes.add({.time = world.time(), .kind = "rounding", .text = text_of_rounding, .first = i, .a = of.rounded});
   }
   for (const std::size_t l : world.near_links) {
-    OfLink& of = links_[l];
-    if (of.told || !of.late) continue;
-    of.told = true;
-    const auto [first, second, number] = world.links[l];
-    notes.add({.time = world.time(),
-               .kind = "overlap",
-               .text = text_of_overlap,
-               .first = first,
-               .second = second,
-               .a = of.depth_max,
-               .b = of.was_put ? 1.0 : 0.0});
+    if (!links_[l].told && links_[l].late) note_overlap(world, l, links_[l].depth_max, notes);
   }
 }
 

@@ -23,6 +23,8 @@ class ExactResponse {
   explicit ExactResponse(const World& world) : bodies_(world.bodies.size()), island_(world.bodies.size()) {}
   // Between frames.
   void add_link(const World& world, const PairMethods& methods, std::size_t link);
+  /// Notes which bodies begin, or were put, so deep inside of each other that no feature is near another.
+  void look_inside(const World& world, const PairMethods& methods, Notes& notes);
   /// Room for more than the last frames needed, so that the next finds it too.
   void make_room();
 
@@ -84,6 +86,7 @@ class ExactResponse {
     bool late = false;       ///< is any row, in this frame, of bodies that have not been calm since?
     bool was_put = false;    ///< is it late because they began or were put so, and not in the course of contact?
     bool told = false;       ///< that they overlap
+    bool is_new = true;      ///< has not been looked inside since its bodies began or were put where they are
     bool idle = false;       ///< since the last frame's begin nothing has been found: all but calm and told is as made
     std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
     std::uint32_t acting = 0;
@@ -118,10 +121,12 @@ class ExactResponse {
   void read_bodies(std::size_t island, double dt);
   void read_rows(const World& world, std::size_t link, std::size_t first_row, FrameCost& cost);
   void tell(const World& world, Notes& notes);
+  void note_overlap(const World& world, std::size_t link, double depth, Notes& notes);
 
   std::unique_ptr<exact::ConvexStep> solver_;  ///< null: no pair has precise contacts
   std::vector<OfBody> bodies_;
   std::vector<OfLink> links_;
+  bool some_are_new_ = false;                        ///< links
   std::size_t rows_needed_ = 0, blocks_needed_ = 0;  ///< most so far, of one island
   std::vector<std::size_t> island_;                  ///< of each body: the number of its island's first body
 };
