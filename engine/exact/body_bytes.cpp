@@ -13,10 +13,10 @@ void fields(auto& archive, ExactEdge::Mark& mark) {
   archive(mark.point, mark.outward);
 }
 void fields(auto& archive, ExactEdge& edge) {
-  auto& [faces, convexity, extent, center, direction, across, half, beyond, limits, sharp, has_sharp, ends, marks,
-         bounds] = edge;
-  archive(faces, convexity, extent, center, direction, across, half, beyond, limits, sharp, has_sharp, ends, marks,
-          bounds.min, bounds.max);
+  auto& [faces, convexity, extent, center, direction, across, half, beyond, corner, limits, sharp, has_sharp, ends,
+         marks, bounds] = edge;
+  archive(faces, convexity, extent, center, direction, across, half, beyond, corner, limits, sharp, has_sharp, ends,
+          marks, bounds.min, bounds.max);
 }
 void fields(auto& archive, ExactFace& face) {
   archive(face.surface, face.trim, face.bounds.min, face.bounds.max);

@@ -52,8 +52,11 @@ class ComparedFaces {
           lies ? compared_distances(pair_, p, here, there) : compared_by(pair_, rule_, p, here, there);
       const bool leads = compared.other > compared.mine && edge.limits_face_at(face, p, there.distance);
       const bool is_inside = there.distance < -pair_.motion.overlap - pair_.motion.thresholds.touching;
-      // Where the third face and the other one meet concavely, the place is to be outside of the third; else of this.
-      if (leads == is_inside ? !leads : meet_concavely(edge, face) != is_inside) continue;
+      // Where the third face and the other one meet concavely, a place beyond that corner is to be outside of the
+      // third; elsewhere the third is not to lead. The far side of a hole or key says nothing.
+      if (leads == is_inside ? !leads : is_inside ? !is_beyond_corner(edge, face, p) : meet_concavely(edge, face))
+        continue;
+      if (is_hidden(pair_.base, face, answer.edges, e, p, there)) continue;
       // Nor does the third own what it cannot push: an edge that ends just inside of it, flush with it.
       const bool may_be_flush = there.distance <= 0 && here.distance > -kThinnest;
       if (!may_be_flush || pair_.normal_cone_weight(c.sample, there.normal) > 0) return false;
@@ -72,6 +75,10 @@ class ComparedFaces {
             (another.ends[end] - corner).norm() <= pair_.base.options.same_corner)
           return true;
     return false;
+  }
+
+  [[nodiscard]] bool is_beyond_corner(const ExactEdge& another, std::uint32_t face, const Vector3d& p) const {
+    return meet_concavely(another, face) && !edge_.limits_face_at(face, p, 0);
   }
 
   const BodyPair& pair_;

@@ -31,10 +31,36 @@ Vector3d nearest_on(const ExactEdge& edge, const Vector3d& foot) {
   return edge.center + std::clamp(edge.direction.dot(foot - edge.center), -edge.half, edge.half) * edge.direction;
 }
 
+/// m, from a point to a straight edge or arc, if what is nearest of it is not an end; else infinite.
+double distance_to(const ExactEdge& edge, const Vector3d& p) {
+  if (edge.extent == ExactEdge::Extent::all) return kOutOfReach;
+  const Vector3d d = p - edge.center;
+  const double a = edge.direction.dot(d);
+  if (edge.extent == ExactEdge::Extent::line)
+    return std::abs(a) < edge.half ? (d - a * edge.direction).norm() : kOutOfReach;
+  const double b = edge.perpendicular.dot(d);
+  const double radial = std::sqrt(a * a + b * b);
+  if (!(a > edge.half * radial)) return kOutOfReach;
+  const double off = radial - (edge.ends[0] - edge.center).norm();
+  return std::sqrt(std::max(0.0, d.squaredNorm() - radial * radial) + off * off);
+}
+
+/// True if a face that curves leaves the edge at a place on the side on which p is. Where it comes round again, as the
+/// side of a pin opposite its key, what is behind the face across is not beyond the edge.
+bool is_on_far_side(const ExactBody& base, const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
+  const AnalyticSurface& surface = *base.faces[face].surface;
+  if (edge.extent != ExactEdge::Extent::line || surface.kind() == SurfaceKind::plane) return true;
+  const Vector3d place = nearest_on(edge, p);
+  const Vector3d n = surface.at(place).normal;
+  const Vector3d wall = base.faces[face_across(edge, face)].surface->at(place).normal;
+  return (p - place).dot(wall - wall.dot(n) * n) < 0;
+}
+
 /// True if a place lies behind the face across a concave edge by more than `more` [m], and within the edge's extent:
 /// beyond its end the face goes on.
-bool is_behind(const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance, double more) {
-  return distance < -more && edge.limits_face_at(face, p, 0);
+bool is_behind(const ExactBody& base, const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance,
+               double more) {
+  return distance < -more && edge.limits_face_at(face, p, 0) && is_on_far_side(base, edge, face, p);
 }
 
 /// True if the curve ends at the place, at a concave corner: a convex one is a feature of its own.
@@ -72,19 +98,23 @@ bool falls_beyond_segment(const BodyPair& pair, const PlacedFeature& placed, con
          !ends_at_concave_corner(pair, placed, c);
 }
 
-/// True if the foot of a place that is now beyond the borders will be within them after the step without contact: so a
-/// wall that comes to a cone's tip from the side is met before it is inside. What is behind the face's surface already
-/// comes to it through another face, and what lies on another one does not fall beside it.
+/// True if the foot of a place that is now beyond the borders will be within them after the step, without contact or as
+/// the step was found to go: so a wall that comes to a cone's tip from the side is met before it is inside. What is
+/// behind the face's surface already comes to it through another face, and what lies on another one does not fall
+/// beside it.
 bool comes_onto_face(const BodyPair& pair, std::uint32_t face, const Candidate& c) {
   if (-c.at.distance > pair.motion.overlap + pair.motion.thresholds.touching) return false;
   const AnalyticSurface& surface = *pair.base.faces[face].surface;
-  const Vector3d way = pair.moved(c.p, pair.motion.free_twist);
   const double reach = pair.base.faces[face].trim->reach_outside();
-  if (way.squaredNorm() < reach * reach) return false;
-  const Vector3d after = c.p + way;
-  const SurfaceAt there = surface.at(after);
-  const Vector3d foot = after - there.distance * there.normal;
-  return is_on_face(pair.base, face, foot) && !lies_across(pair, face, foot, c, kNoFace);
+  const auto comes_by = [&](const Twist& twist) {
+    const Vector3d way = pair.moved(c.p, twist);
+    if (way.squaredNorm() < reach * reach) return false;
+    const Vector3d after = c.p + way;
+    const SurfaceAt there = surface.at(after);
+    const Vector3d foot = after - there.distance * there.normal;
+    return is_on_face(pair.base, face, foot) && !lies_across(pair, face, foot, c, kNoFace);
+  };
+  return comes_by(pair.motion.free_twist) || (pair.motion.is_found_again && comes_by(pair.motion.during));
 }
 
 /// True if a place behind a face came in through another one, the wall: on the straight way to its foot it enters
@@ -212,8 +242,8 @@ bool is_on_face(const ExactBody& base, std::uint32_t face, const Vector3d& foot)
     } else {
       const SurfaceAt there = base.faces[face_across(edge, face)].surface->at(foot);
       if (!edge.limits_face_at(face, foot, there.distance)) continue;
-      const bool is_off =
-          edge.convexity == Convexity::convex ? there.distance > 0 : is_behind(edge, face, foot, there.distance, 0);
+      const bool is_off = edge.convexity == Convexity::convex ? there.distance > 0
+                                                              : is_behind(base, edge, face, foot, there.distance, 0);
       if (is_off && !is_hidden(base, face, answer.edges, e, foot, there)) return false;
     }
   }
@@ -230,8 +260,9 @@ bool is_hidden(const ExactBody& base, std::uint32_t face, std::span<const std::u
     if (n == e || nearer.convexity == Convexity::smooth) continue;
     const AnalyticSurface& wall = *base.faces[face_across(nearer, face)].surface;
     const double here = wall.at(p).distance;
-    if (!(std::abs(here) < std::abs(across.distance)) || !nearer.limits_face_at(face, p, here)) continue;
     const double side = nearer.convexity == Convexity::convex ? -1 : 1;  // of the wall's distance: where the face is
+    if (side * here > kBeyond && distance_to(nearer, p) < (p - place).norm() - kBeyond) return true;
+    if (!(std::abs(here) < std::abs(across.distance)) || !nearer.limits_face_at(face, p, here)) continue;
     const auto is_beyond = [&](const Vector3d& x) { return side * wall.at(x).distance < -kBeyond; };
     if (!is_beyond(place)) continue;
     const bool faces_each_other =
@@ -320,7 +351,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     const bool is_convex = edge.convexity == Convexity::convex;
     // Far behind the face across: if the wall there is thin, the place is outside of the body, on its far side.
     const bool is_mine = is_convex ? owns_point(pair, c.p, c.at, there, face < other)
-                                   : !is_behind(edge, face, c.p, there.distance, pair.motion.margin);
+                                   : !is_behind(pair.base, edge, face, c.p, there.distance, pair.motion.margin);
     const bool counts = !is_limited && (is_convex || there.distance < 0);
     if ((!is_mine || counts) && is_hidden(pair.base, face, answer.edges, e, c.p, there)) continue;
     is_limited = is_limited || counts;
@@ -330,7 +361,7 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     c.weight *= kept_share(pair, placed, edge, face, there, c);
     if (!(c.weight > 0)) return false;
   }
-  return is_limited && slides != Slide::past;
+  return is_limited ? slides != Slide::past : comes_onto_face(pair, face, c);
 }
 
 }  // namespace verisim::exact

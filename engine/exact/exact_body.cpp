@@ -127,6 +127,7 @@ class PartImporter {
     if (edge.faces.size() != 2 || edge.faces[0] == edge.faces[1]) return;  // a seam inside one surface
     ExactEdge made;
     made.beyond_end = body_.options.beyond_end;
+    made.same_corner = body_.options.same_corner;
     made.faces = {face_base_ + edge.faces[0], face_base_ + edge.faces[1]};
     const AnalyticSurface* surface[2] = {surface_of(made.faces[0]), surface_of(made.faces[1])};
     points_[e] = points_along(edge, body_.options.spacing, surface[0], surface[1]);
@@ -199,7 +200,7 @@ class PartImporter {
 bool ExactEdge::limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const {
   if (extent == Extent::all) return true;
   const std::size_t side = faces[0] == face ? 0 : 1;
-  const double more = distance < 0 ? beyond_end : 0;
+  const double more = distance < 0 ? beyond_end : same_corner;
   if (has_sharp_corner[side])
     for (std::size_t end = 0; end < 2; ++end)
       if (sharp_corner[side][end].dot(p - ends[end]) < -more) return false;

@@ -66,7 +66,7 @@ struct ExactEdge {
   Extent extent = Extent::all;
   Vector3d center = Vector3d::Zero(), direction = Vector3d::Zero(), perpendicular = Vector3d::Zero();
   double half = 0;
-  double beyond_end = 0;  ///< m, BodyOptions::beyond_end
+  double beyond_end = 0, same_corner = 0;  ///< m, those of BodyOptions
   /// [face][0: at its beginning, 1: at its end] Does the edge limit the face beyond that end too? True in two cases:
   /// all edges at that corner are convex, so the material is inside of all of their faces; or the face's own corner
   /// there is convex (below 180 degrees), so whoever is across the edge is off the face.
@@ -82,7 +82,8 @@ struct ExactEdge {
   /// True if the edge limits `face` near the point p: p lies within the extent, or limits_beyond_end holds. At a corner
   /// with a concave edge the material is inside of either of two faces; a point that is inside of the face across
   /// (distance < 0) counts as within up to `beyond_end` beyond the end, and behind the other edge of a sharp corner.
-  /// Farther behind that one it does not limit.
+  /// Farther behind that one it does not limit. One that is outside counts as within up to `same_corner`: what lies in
+  /// the corner may be beyond the ends of both of its edges, by a rounding.
   /// @param distance  of p from the face across the edge [m]
   [[nodiscard]] bool limits_face_at(std::uint32_t face, const Vector3d& p, double distance) const;
 

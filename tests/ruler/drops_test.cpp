@@ -290,14 +290,17 @@ TEST(RandomDrops, OfCutRoundsAtRimsAreRecordedAsDeepAsTheyAre) {
 
 // Where a rib, slot or pit is narrower than a voxel, its far side was taken for a border of what lies beside its near
 // side; and an edge shorter than a voxel might be concave for convex. Cubes sank by 2 mm beside a rib, discs were
-// thrown out of pits. Of the first 500, 4 are beyond the goal: 55, 145 and 193 um deep, the last with 2 % of energy,
-// and one with 3 %.
+// thrown out of pits. Where the far side of a key or hole counted for the near one, keyed pins sank by up to 0.5 mm
+// into edges, and a tip by 0.9 mm beside a keyhole.
 TEST(RandomDrops, OnWhatIsSmallerThanVoxelsAreRecordedAsDeepAsTheyAre) {
   const Seeds asked = seeds(66, 1210);
   const std::vector<Outcome> outcomes =
-      drop_all(drops::small_bodies(), drops::small_seats(), asked, {},
+      drop_all(drops::small_bodies(), drops::small_seats(), asked, {98, 450, 500, 692, 703, 956},
                {.aside = 0.003, .low = 0.0095, .high = 0.0115, .voxel = 0.0005, .coarsest = 0.004});
   if (asked.are_asked_for) return;
+  for (const Outcome& o : outcomes)
+    EXPECT_TRUE(o.agrees()) << o.body << " on " << o.seat << ", seed " << o.seed << ": " << o.recorded
+                            << " m recorded, " << o.overlap << " m true";
   // Seed 18 is a capsule that rocks on an edge: 56 um deep, as it happens to bounce; the goal is 50.
   const auto beyond =
       std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return !o.is_good() && o.seed != 18; });
@@ -305,7 +308,7 @@ TEST(RandomDrops, OnWhatIsSmallerThanVoxelsAreRecordedAsDeepAsTheyAre) {
 }
 
 // Steps of 2 and 5 ms, in which a body turns by up to a third of a radian and its places of contact pass along whole
-// segments: few are beyond the goal of 1 ms.
+// segments: few are beyond the goal of 1 ms. A cone that slid down a funnel in 5 ms came 9 mm into its floor.
 TEST(RandomDrops, InLongStepsAreRecordedAsDeepAsTheyAre) {
   std::vector<drops::Kind> bodies = drops::body_kinds();
   for (drops::Kind& kind : drops::cornered_kinds()) bodies.push_back(std::move(kind));
@@ -314,7 +317,7 @@ TEST(RandomDrops, InLongStepsAreRecordedAsDeepAsTheyAre) {
   for (const double dt : {0.002, 0.005}) {
     SCOPED_TRACE(dt);
     const Seeds asked = seeds(40, 400);
-    std::vector<Outcome> outcomes = drop_all(bodies, seats, asked, {}, {.dt = dt});
+    std::vector<Outcome> outcomes = drop_all(bodies, seats, asked, {204}, {.dt = dt});
     if (asked.are_asked_for) continue;
     for (const Outcome& o : outcomes) {
       SCOPED_TRACE(o.body + " on " + o.seat + ", seed " + std::to_string(o.seed));

@@ -71,8 +71,7 @@ Bounds box_of(const exact::ExactBody& body) {
 
 void ExactResponse::add_link(const World& world, const PairMethods& methods, std::size_t l) {
   VERISIM_ASSERT(l == links_.size());
-  links_.emplace_back();
-  some_are_new_ = true;
+  links_.emplace_back().is_new = some_are_new_ = true;
   if (!methods.is_precise(l)) return;
   for (const std::size_t body : {world.links[l].first, world.links[l].second})
     bodies_[body].box_B = box_of(*world.bodies[body].exact);
@@ -257,6 +256,7 @@ void ExactResponse::begin_frame(const World& world, OfLink& of) const {
   of = {};
   of.calm = last.calm;
   of.told = last.told;
+  of.is_new = last.is_new;
   of.idle = last.found_in == kNone || last.found_in + 1 != world.frame;
   if (of.idle) return;
   of.overlap = last.overlap;

@@ -86,7 +86,7 @@ class ExactResponse {
     bool late = false;       ///< is any row, in this frame, of bodies that have not been calm since?
     bool was_put = false;    ///< is it late because they began or were put so, and not in the course of contact?
     bool told = false;       ///< that they overlap
-    bool is_new = true;      ///< has not been looked inside since its bodies began or were put where they are
+    bool is_new = false;     ///< has not been looked inside since its bodies began or were put where they are
     bool idle = false;       ///< since the last frame's begin nothing has been found: all but calm and told is as made
     std::uint32_t calm = 0;  ///< frames without a late row since the two began or were put here; kCalm: as all others
     std::uint32_t acting = 0;
