@@ -145,6 +145,12 @@ bool comes_through_another(const BodyPair& pair, const Candidate& c, std::uint32
   return false;
 }
 
+/// True if a ball's contact point, as far below the surface as the ball is wide, is beyond a pin's axis: it is outside
+/// again, or below the other side.
+bool is_on_other_side(const AnalyticSurface& surface, const Candidate& touching) {
+  return surface.is_convex() && surface.at(touching.p).normal.dot(touching.at.normal) < 0;
+}
+
 /// True if a ball's contact point lies on the face that the ball belongs to, to a tenth of what counts as on it,
 /// whatever the step: its normal is across the curve, to sigma. The point, r sigma along the curve, is then no farther
 /// from a tube of radius r round a circle of radius R than r sigma^2 R / (R - r). A cone's ball touches at a slope.
@@ -324,7 +330,9 @@ bool accept_candidate(const BodyPair& pair, const PlacedFeature& placed, std::ui
     Candidate touching = c;
     touching.p -= feature.radius_at(c.place.c) * c.at.normal;
     touching.at.distance = c.gap;
-    if (c.gap < -kThinnest && comes_through_another(pair, touching, face, foot)) return false;
+    if (c.gap < -kThinnest && (is_on_other_side(*pair.base.faces[face].surface, touching) ||
+                               comes_through_another(pair, touching, face, foot)))
+      return false;
     const Vector3d contact_point = pair.motion.now.R.transpose() * (touching.p - pair.motion.now.p);
     const SearchThresholds& fade = pair.motion.thresholds;
     if (is_across(placed, c, 0.1 * fade.own_face_full)) {
