@@ -3,11 +3,13 @@
 // item 7.
 //
 // The features of either body (exact_body.hpp) are tested against the faces of the other.
-//   Closest place   Newton's method moves a sample to the place of its segment that is closest to the face.
+//   Closest place   Newton's method moves a sample to the place of its segment that is closest to the face. A segment
+//                   has one: of an edge whose segment (a voxel long) passes a ring or pin twice, one place is found.
 //   Gap and normal  are those of the precise surface, less the radius of the feature's ball.
 //   Trim            A place whose foot is beyond the border of a face gives no row with it, unless it comes onto the
 //                   face within the step.
-//                   An edge that another edge of the face hides from the place does not border it there.
+//                   An edge that another edge of the face hides from the place does not border it there: the nearest
+//                   edge says on which side a place is. So the far side of a key or hole says nothing.
 //   Ownership       At a convex edge the solid is where both signed distances are negative, so the face with the
 //                   larger distance owns the place. At a concave edge each face has its row, so the smaller distance
 //                   counts.
@@ -20,6 +22,8 @@
 //                   through another one. What is behind a face and beside its border comes to it through another one.
 //   Sharp corners   Beside a corner of a face that is sharper than 270 degrees (a triangular hole) the strip along one
 //                   edge reaches behind the other one; there it does not limit (ExactEdge::sharp_corner).
+//   In a corner     What lies in a corner of a hole is limited by its edges, though rounding may put it beyond the
+//                   ends of both.
 //   Edge and edge   The mover's curves are tested against the convex edges, too. Where a segment crosses from one face
 //                   of an edge to the other, there is a row with the normal perpendicular to both curves; it crosses
 //                   now or, where it does not yet, after the step (edge_crossing.hpp).
