@@ -45,9 +45,9 @@ double distance_to(const ExactEdge& edge, const Vector3d& p) {
   return std::sqrt(std::max(0.0, d.squaredNorm() - radial * radial) + off * off);
 }
 
-/// True if a face that curves leaves the edge at a place on the side on which p is. Where it comes round again, as the
-/// side of a pin opposite its key, what is behind the face across is not beyond the edge.
-bool is_on_far_side(const ExactBody& base, const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
+/// True if a place lies on that side of an edge on which the face is not. Asked of straight edges of curved faces: the
+/// side of a pin opposite its key is behind a side of the key, too, but not beyond the key's edge.
+bool is_beyond_edge(const ExactBody& base, const ExactEdge& edge, std::uint32_t face, const Vector3d& p) {
   const AnalyticSurface& surface = *base.faces[face].surface;
   if (edge.extent != ExactEdge::Extent::line || surface.kind() == SurfaceKind::plane) return true;
   const Vector3d place = nearest_on(edge, p);
@@ -60,7 +60,7 @@ bool is_on_far_side(const ExactBody& base, const ExactEdge& edge, std::uint32_t 
 /// beyond its end the face goes on.
 bool is_behind(const ExactBody& base, const ExactEdge& edge, std::uint32_t face, const Vector3d& p, double distance,
                double more) {
-  return distance < -more && edge.limits_face_at(face, p, 0) && is_on_far_side(base, edge, face, p);
+  return distance < -more && edge.limits_face_at(face, p, 0) && is_beyond_edge(base, edge, face, p);
 }
 
 /// True if the curve ends at the place, at a concave corner: a convex one is a feature of its own.
